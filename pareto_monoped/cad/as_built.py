@@ -15,11 +15,9 @@ from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.robot.build import Robot, build_robot
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
 
-LENGTH_STEP_M = 1e-4
-"""Link lengths are made to 0.1 mm."""
+LENGTH_STEP_M = 1e-4  #: Link lengths are made to 0.1 mm.
 _SAME_CIRCLE_MM = 0.05  # pitch circles closer than this take each other's screws
-_REST = Pose(hip_rad=-0.8, knee_rad=1.6)
-"""Shown when the robot cannot stand in its start pose."""
+_REST = Pose(hip_rad=-0.8, knee_rad=1.6)  # shown when the robot cannot stand in its start pose
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,18 +25,13 @@ class Built:
     """A design as it is exported."""
 
     design: Design  #: with lengths of whole 0.1 mm and real ratios
-    robot: Robot  #: its parts
+    robot: Robot
     arrays: RobotArrays  #: the robot as it is simulated
-    pose: Pose  #: of the assembly
+    pose: Pose
 
 
 def built_of(
-    design: Design,
-    maps: Maps,
-    calibration: Calibration,
-    *,
-    hip_rad: float | None = None,
-    knee_rad: float | None = None,
+    design: Design, maps: Maps, calibration: Calibration, *, hip_rad: float | None = None, knee_rad: float | None = None
 ) -> Built:
     """Build a design in the pose in which its jump starts, or at the given angles.
 
@@ -54,20 +47,14 @@ def built_of(
 
 
 def as_built(design: Design, maps: Maps) -> Design:
-    """The design with link lengths of whole 0.1 mm and the ratios that its gearboxes really have.
-
-    Raises:
-        DesignError: no gearbox of the joint's motor has the ratio.
-    """
+    """Return the design with lengths of whole 0.1 mm and its gearboxes' ratios; ``DesignError`` without a gearbox."""
     both = joint_maps(maps)
-    return design.replace(
-        {
-            "thigh_length_m": round(round(design.thigh_length_m / LENGTH_STEP_M) * LENGTH_STEP_M, 4),
-            "shank_length_m": round(round(design.shank_length_m / LENGTH_STEP_M) * LENGTH_STEP_M, 4),
-            "hip_ratio": both.hip.lookup(design.hip_ratio).ratio,
-            "knee_ratio": both.knee.lookup(design.knee_ratio).ratio,
-        }
+    thigh_m, shank_m = (
+        round(round(length_m / LENGTH_STEP_M) * LENGTH_STEP_M, 4)
+        for length_m in (design.thigh_length_m, design.shank_length_m)
     )
+    hip, knee = both.hip.lookup(design.hip_ratio).ratio, both.knee.lookup(design.knee_ratio).ratio
+    return design.replace({"thigh_length_m": thigh_m, "shank_length_m": shank_m, "hip_ratio": hip, "knee_ratio": knee})
 
 
 def require_fit(robot: Robot, leg: LegDimensions) -> None:
@@ -98,16 +85,11 @@ def require_fit(robot: Robot, leg: LegDimensions) -> None:
 def assembly_pose(
     arrays: RobotArrays, calibration: Calibration, *, hip_rad: float | None = None, knee_rad: float | None = None
 ) -> Pose:
-    """The pose in which the first robot is assembled: that in which its jump starts.
-
-    Args:
-        arrays: the robot as it is simulated.
-        calibration: the jump model, which sets the start pose.
-        hip_rad: angle of the hip, instead of that of the start pose.
-        knee_rad: angle of the knee, likewise.
-    """
+    """Return the pose in which the first robot is assembled: that in which its jump starts."""
     start = start_pose(arrays, calibration)
-    stands = bool(np.isfinite(start.hip_rad[0]))
-    hip = float(start.hip_rad[0]) if stands else _REST.hip_rad
-    knee = float(start.knee_rad[0]) if stands else _REST.knee_rad
-    return Pose(hip_rad=hip if hip_rad is None else hip_rad, knee_rad=knee if knee_rad is None else knee_rad)
+    rest = _REST
+    if np.isfinite(start.hip_rad[0]):
+        rest = Pose(hip_rad=float(start.hip_rad[0]), knee_rad=float(start.knee_rad[0]))
+    return Pose(
+        hip_rad=rest.hip_rad if hip_rad is None else hip_rad, knee_rad=rest.knee_rad if knee_rad is None else knee_rad
+    )

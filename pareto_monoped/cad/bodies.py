@@ -5,7 +5,7 @@ covers its outline; across y it runs into what its outline sweeps over at the sa
 that lead out of the assembly, so that blocking does not depend on the distance.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import manifold3d as m3
@@ -37,8 +37,7 @@ _LASTING = frozenset({JointKind.MOULDED, JointKind.RUNNING})
 """Joints that are never taken apart: what is cast onto a part, and a rotor in its supplier's bearings."""
 _FLEXIBLE = frozenset({JointKind.ENGAGED, JointKind.THREADED})
 """Joints of parts that do not come straight: a chain is laid around its sprocket, a turnbuckle is turned."""
-_LIMP = frozenset({Role.CHAIN, Role.TURNBUCKLE})
-"""Parts of a chain drive, which are put together link by link."""
+_LIMP = frozenset({Role.CHAIN, Role.TURNBUCKLE})  # parts of a chain drive, which are put together link by link
 _SPRUNG = frozenset({Role.RETAINING_RING})
 """Parts that are spread with pliers: they leave their groove, and then go straight."""
 
@@ -47,7 +46,7 @@ _SPRUNG = frozenset({Role.RETAINING_RING})
 class Body:
     """Instances of one part at one place of one unit."""
 
-    unit: str  #: name of the unit
+    unit: str
     instances: tuple[int, ...]  #: indices of the placed instances
     instance: Instance  #: the first of them
 
@@ -59,7 +58,7 @@ class Body:
 
 @dataclass(slots=True, kw_only=True)
 class Blocking:
-    """Bodies, and which of them is in the way of which."""
+    """Bodies, and which of them block which."""
 
     bodies: tuple[Body, ...]  #: in the order of the assembly
     #: For +y and -y: true at (i, j) where body i, moved that way, runs into body j; shape (n, n)
@@ -67,15 +66,14 @@ class Blocking:
     lasting: Bools  #: true at (i, j) where two bodies are never taken apart
     tied: Bools  #: true at (i, j) where one is a screw in the other's thread
     touching: Bools  #: true at (i, j) where two bodies touch
-    #: For each fastener the bodies in the way of it and of its key, one set for each way to undo it
-    key: Mapping[int, tuple[frozenset[int], ...]]
-    goes_through: Mapping[int, frozenset[int]]  #: for each fastener the bodies that it joins
+    key: Mapping[int, tuple[frozenset[int], ...]]  #: per fastener the bodies in the way of its key, per way to undo it
+    goes_through: Mapping[int, frozenset[int]]  #: per fastener the bodies that it joins
     _slabs: "_Slabs"
     _flexible: Bools
     _across: dict[tuple[str, int], Bools] = field(default_factory=dict)
 
     def blocked(self, direction: str, body: int) -> Bools:
-        """The bodies that a body runs into in a direction, shape (n,)."""
+        """Return the bodies that a body runs into in a direction, shape (n,)."""
         if direction in self.along:
             return np.asarray(self.along[direction][body])
         if (direction, body) not in self._across:
@@ -85,62 +83,55 @@ class Blocking:
         return self._across[direction, body]
 
     def driven_from(self, fastener: int) -> str:
-        """The side from which a fastener comes, ``+y`` or ``-y``: that of its head, or of the screw of a bolt."""
+        """Return the side from which a fastener comes, ``+y`` or ``-y``: that of its head, or of a bolt's screw."""
         return self._slabs.head_side(fastener)
 
 
 def bodies_of(placed: Sequence[Instance]) -> tuple[Body, ...]:
-    """Instances of one part of one unit that lie at one height belong together."""
+    """Return the bodies; instances of one part of one unit that lie at one height are one."""
     groups: dict[tuple[int, str, float], list[int]] = {}
     for k, instance in enumerate(placed):
         height = round(float(instance.world[1, 3]), 3)
         groups.setdefault((id(instance.part), instance.unit, height), []).append(k)
-    return tuple(
-        Body(unit=placed[members[0]].unit, instances=tuple(members), instance=placed[members[0]])
-        for members in groups.values()
-    )
+    first = {members[0]: tuple(members) for members in groups.values()}
+    return tuple(Body(unit=placed[k].unit, instances=members, instance=placed[k]) for k, members in first.items())
 
 
 def blocking_of(placed: Sequence[Instance]) -> Blocking:
     """Look at all pairs of bodies of an assembly in ``retention.POSE``."""
     bodies = bodies_of(placed)
     pieces = slabs(placed, blunt=False)
-    view = _Slabs(bodies, placed, pieces)
-    count = len(bodies)
+    view, count = _Slabs(bodies, placed, pieces), len(bodies)
     owner = np.empty(len(placed), dtype=np.intp)
     for k, body in enumerate(bodies):
         owner[list(body.instances)] = k
-    tied = _grouped(threads(placed, pieces), owner, count)
-    lasting = _joined(bodies, _LASTING)
     limp = np.array([body.instance.part.role in _LIMP for body in bodies])
     flexible = _joined(bodies, _FLEXIBLE) | (limp[:, None] & limp[None])
     forward = view.along() & ~flexible & ~np.eye(count, dtype=bool)
     fasteners = [k for k, body in enumerate(bodies) if body.is_fastener]
-    joined = {k: view.around(k) for k in fasteners}
     return Blocking(
         bodies=bodies,
         along={"+y": forward, "-y": forward.T.copy()},
-        lasting=lasting,
-        tied=tied,
+        lasting=_joined(bodies, _LASTING),
+        tied=_grouped(threads(placed, pieces), owner, count),
         touching=view.touching(),
         key={k: view.in_the_way_of_key(k) for k in fasteners},
-        goes_through=joined,
+        goes_through={k: view.around(k) for k in fasteners},
         _slabs=view,
         _flexible=flexible,
     )
 
 
 def _grouped(matrix: Bools, owner: NDArray[np.intp], count: int) -> Bools:
-    """The same matrix for bodies: true where it is for any of their instances."""
+    """Return the same matrix for bodies: true where it is for any of their instances."""
     found = np.zeros((count, count), dtype=bool)
     one, other = np.nonzero(matrix)
     found[owner[one], owner[other]] = True
     return found
 
 
-def _joined(bodies: Sequence[Body], kinds: Iterable[JointKind]) -> Bools:
-    """True at (i, j) where one body's record names the other as its partner in a joint of one of the kinds."""
-    wanted = frozenset(kinds)
+def _joined(bodies: Sequence[Body], wanted: frozenset[JointKind]) -> Bools:
+    """Return true at (i, j) where one body's record names the other as its partner in a joint of one of the kinds."""
     found = np.zeros((len(bodies), len(bodies)), dtype=bool)
     for i, body in enumerate(bodies):
         joint = body.instance.part.joint
@@ -171,7 +162,7 @@ class _Slabs:
         self.corners = np.array([piece.section.num_vert() for piece in pieces])
 
     def along(self) -> Bools:
-        """True at (i, j) where body i, moved along +y, runs into body j."""
+        """Return true at (i, j) where body i, moved along +y, runs into body j."""
         count = len(self.bodies)
         found = np.zeros((count, count), dtype=bool)
         before = self.low[None] > self.high[:, None] - _TOUCH_MM
@@ -184,24 +175,33 @@ class _Slabs:
         return found
 
     def across(self, direction: str, body: int) -> Bools:
-        """The bodies that one runs into, moved across the axis, shape (n,)."""
+        """Return the bodies that one runs into, moved across the axis, shape (n,)."""
         sign = 1.0 if direction[0] == "+" else -1.0
         way = np.array([sign, 0.0] if direction[1] == "x" else [0.0, sign]) * _FAR_MM
-        found = np.zeros(len(self.bodies), dtype=bool)
+        met: set[int] = set()
         for a in np.flatnonzero(self.owner == body).tolist():
-            swept = _swept(self.section[a].offset(-_SLIDE_MM, m3.JoinType.Miter), way)
-            if swept.is_empty():
-                continue
-            common = np.minimum(self.high[a], self.high) - np.maximum(self.low[a], self.low)
-            meets = (common > _SLIDE_MM) & (self.owner != body) & self._covering(np.array([swept.bounds()]))[0]
-            for b in np.flatnonzero(meets).tolist():
-                j = int(self.owner[b])
-                if not found[j] and (swept ^ self.section[b]).area() > _AREA_MM2:
-                    found[j] = True
+            slim = self.section[a].offset(-_SLIDE_MM, m3.JoinType.Miter)
+            swept = m3.CrossSection.batch_boolean([slim, *_strips(slim, way)], m3.OpType.Add)
+            if not swept.is_empty():
+                self._meet(swept, self._beside(a, swept, _SLIDE_MM) & (self.owner != body), met)
+        found = np.zeros(len(self.bodies), dtype=bool)
+        found[list(met)] = True
         return found
 
+    def _beside(self, a: int, path: m3.CrossSection, common_mm: float) -> Bools:
+        """Return which slabs have more than a height in common with slab ``a`` and a box that meets that of a path."""
+        common = np.minimum(self.high[a], self.high) - np.maximum(self.low[a], self.low)
+        return np.asarray((common > common_mm) & self._covering(np.array([path.bounds()]))[0])
+
+    def _meet(self, path: m3.CrossSection, looked_at: Bools, met: set[int]) -> None:
+        """Add the bodies whose slabs, of those that are looked at, share an area with a path."""
+        for b in np.flatnonzero(looked_at).tolist():
+            j = int(self.owner[b])
+            if j not in met and (path ^ self.section[b]).area() > _AREA_MM2:
+                met.add(j)
+
     def touching(self) -> Bools:
-        """True at (i, j) where two bodies lie beside or before each other with no more than play between them."""
+        """Return true at (i, j) where two bodies lie beside or before each other with at most play between them."""
         found = np.eye(len(self.bodies), dtype=bool)
         margin = np.array([-_PLAY_MM, -_PLAY_MM, _PLAY_MM, _PLAY_MM])
         common = np.minimum(self.high[:, None], self.high[None]) - np.maximum(self.low[:, None], self.low[None])
@@ -218,21 +218,15 @@ class _Slabs:
         return found
 
     def around(self, fastener: int) -> frozenset[int]:
-        """The bodies whose material is close around a fastener."""
-        found = set()
+        """Return the bodies whose material is close around a fastener."""
+        found: set[int] = set()
         for a in np.flatnonzero(self.owner == fastener).tolist():
             wide = self.section[a].offset(_NEAR_MM, m3.JoinType.Round)
-            common = np.minimum(self.high[a], self.high) - np.maximum(self.low[a], self.low)
-            near = (common > _DEPTH_MM) & (self.owner != fastener) & self._covering(np.array([wide.bounds()]))[0]
-            found |= {
-                int(self.owner[b])
-                for b in np.flatnonzero(near).tolist()
-                if int(self.owner[b]) not in found and (wide ^ self.section[b]).area() > _AREA_MM2
-            }
+            self._meet(wide, self._beside(a, wide, _DEPTH_MM) & (self.owner != fastener), found)
         return frozenset(found)
 
     def in_the_way_of_key(self, fastener: int) -> tuple[frozenset[int], ...]:
-        """The bodies that keep a fastener from being undone: before its head, by its length and that of its key.
+        """Return the bodies that block a fastener and its key, per way to undo it: before its head, by both lengths.
 
         A bolt with its nut needs room at both ends. A spanner comes from beside the head, from any direction. A sprung
         ring is held by the walls of its groove and leaves it on either side.
@@ -250,7 +244,7 @@ class _Slabs:
         return (frozenset(self._before_heads(fastener, (1, -1) if role is Role.BOLT else ())),)
 
     def _before_heads(self, fastener: int, sides: tuple[int, ...], *, reach_mm: float = KEY_REACH_MM) -> set[int]:
-        """What lies before the widest end of each instance, or before the given sides (1 is +y)."""
+        """Return what lies before the widest end of each instance, or before the given sides (1 is +y)."""
         found: set[int] = set()
         for instance in self.bodies[fastener].instances:
             own = np.flatnonzero(self.instance == instance)
@@ -258,23 +252,17 @@ class _Slabs:
             widest = self._widest(own)
             head_up = float(self.low[widest] + self.high[widest]) > low + high
             reach = reach_mm if self.bodies[fastener].instance.part.role in _SPRUNG else high - low + reach_mm
-            path = self.slim[widest]
             for side in sides or ((1,) if head_up else (-1,)):
-                start = high if side > 0 else low
                 if side > 0:
-                    before = (self.low > start - _FLUSH_MM) & (self.low < start + reach)
+                    before = (self.low > high - _FLUSH_MM) & (self.low < high + reach)
                 else:
-                    before = (self.high < start + _FLUSH_MM) & (self.high > start - reach)
+                    before = (self.high < low + _FLUSH_MM) & (self.high > low - reach)
                 before &= (self.owner != fastener) & self._covering(self.bounds[[widest]])[0]
-                found |= {
-                    int(self.owner[b])
-                    for b in np.flatnonzero(before).tolist()
-                    if int(self.owner[b]) not in found and (path ^ self.section[b]).area() > _AREA_MM2
-                }
+                self._meet(self.slim[widest], before, found)
         return found
 
     def _beside_heads(self, fastener: int, angle_rad: float) -> set[int]:
-        """What an open spanner meets that comes to each head, at an angle to the way out from the circle's axis."""
+        """Return what an open spanner meets at each head, at an angle to the way out from the circle's axis."""
         found: set[int] = set()
         for instance in self.bodies[fastener].instances:
             head = self._widest(np.flatnonzero(self.instance == instance))
@@ -283,50 +271,37 @@ class _Slabs:
             half, reach = _JAW * radius, radius + SPANNER_REACH_MM
             outwards = np.arctan2(*self.outwards[instance][[1, 0]])
             path = m3.CrossSection([np.array([[0.0, -half], [reach, -half], [reach, half], [0.0, half]])])
-            path = path.rotate(float(np.degrees(outwards + angle_rad))).translate(
-                (0.5 * (left + right), 0.5 * (low + high))
-            )
-            common = np.minimum(self.high[head], self.high) - np.maximum(self.low[head], self.low)
-            meets = (common > _DEPTH_MM) & (self.instance != instance) & self._covering(np.array([path.bounds()]))[0]
-            found |= {
-                int(self.owner[b])
-                for b in np.flatnonzero(meets).tolist()
-                if int(self.owner[b]) not in found and (path ^ self.section[b]).area() > _AREA_MM2
-            }
+            path = path.rotate(float(np.degrees(outwards + angle_rad)))
+            path = path.translate((0.5 * (left + right), 0.5 * (low + high)))
+            self._meet(path, self._beside(head, path, _DEPTH_MM) & (self.instance != instance), found)
         return found
 
     def head_side(self, fastener: int) -> str:
-        """The side on which a fastener is widest."""
+        """Return the side on which a fastener is widest."""
         own = np.flatnonzero(self.instance == self.bodies[fastener].instances[0])
         widest = self._widest(own)
         middle = float(self.low[own].min() + self.high[own].max())
         return "+y" if float(self.low[widest] + self.high[widest]) > middle else "-y"
 
     def _widest(self, own: NDArray[np.intp]) -> int:
-        """Of some slabs the widest: the head of a screw."""
+        """Return the widest of some slabs: the head of a screw."""
         size = self.bounds[own]
         return int(own[int(np.argmax(size[:, 2] - size[:, 0]))])
 
     def _simple_first(self, pairs: Bools) -> list[list[int]]:
-        """The pairs of slabs where a matrix is true, those with the fewest corners first: they often decide."""
+        """Return the pairs of slabs where a matrix is true, those with the fewest corners first: they often decide."""
         found = np.argwhere(pairs)
         return list(found[np.argsort(self.corners[found].sum(axis=1), kind="stable")].tolist())
 
     def _covering(self, bounds: NDArray[np.float64]) -> Bools:
-        """Which boxes, of shape (m, 4), meet those of the slabs: shape (m, number of slabs)."""
+        """Return which boxes, of shape (m, 4), meet those of the slabs: shape (m, number of slabs)."""
         mine = bounds[:, None]
-        return np.asarray(
-            np.all((mine[..., :2] < self.bounds[None, :, 2:]) & (mine[..., 2:] > self.bounds[None, :, :2]), axis=2)
-        )
-
-
-def _swept(section: m3.CrossSection, way: NDArray[np.float64]) -> m3.CrossSection:
-    """All that a section covers on a straight way."""
-    return m3.CrossSection.batch_boolean([section, *_strips(section, way)], m3.OpType.Add)
+        meets = (mine[..., :2] < self.bounds[None, :, 2:]) & (mine[..., 2:] > self.bounds[None, :, :2])
+        return np.asarray(np.all(meets, axis=2))
 
 
 def _strips(section: m3.CrossSection, way: NDArray[np.float64]) -> Iterator[m3.CrossSection]:
-    """What each edge of a section sweeps over."""
+    """Yield what each edge of a section sweeps over."""
     for polygon in section.to_polygons():
         corners = np.asarray(polygon)
         for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):

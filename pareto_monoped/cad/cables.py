@@ -28,8 +28,7 @@ from pareto_monoped.robot.build import Robot, Unit
 
 Points = NDArray[np.float64]
 
-TIE, TIE_DESIGNATION = "tie", "cable tie 2.5 x 100 mm"
-"""What is at the corner with a tie, and what is bought for it."""
+TIE, TIE_DESIGNATION = "tie", "cable tie 2.5 x 100 mm"  #: What is at the corner with a tie, and what is bought for it.
 _WIRES = ((1.0, 2.5), (1.5, 2.8), (2.5, 3.4), (4.0, 4.2), (6.0, 5.2))
 """Copper in mm2 and outer diameter in mm of fine-stranded wires with silicone insulation, type SiF (makers' data)."""
 _CURRENT_A_PER_MM2 = 32.0
@@ -44,8 +43,6 @@ _TAILS_MM = (80.0, 60.0)
 """What is cut longer: to the windings inside the motor, and from the board's edge to its terminals; our own choice."""
 _ROUND_MM = 10.0  # cut lengths are rounded up to this
 _COPPER_G_PER_MM3, _SILICONE_G_PER_MM3 = 8.96e-3, 1.2e-3
-
-
 _CURE = "take one that its maker allows to bend so"
 
 
@@ -58,8 +55,7 @@ class Cable:
     """One cable, or the three wires of a motor, which run side by side."""
 
     name: str  #: such as ``hip_motor``
-    #: start, end: what it joins, in words
-    start: str
+    start: str  #: what it joins, in words
     end: str
     wires: int  #: how many are cut
     designation: str  #: what is bought
@@ -99,7 +95,7 @@ class Cable:
 
 
 def rounded(points_mm: Points, radius_mm: float) -> Points:
-    """The same line with its corners as arcs of 16 straight pieces, shape (m, n)."""
+    """Return a line with its corners as arcs of 16 straight pieces, shape (m, n)."""
     line = [points_mm[0]]
     for before, corner, after in zip(points_mm, points_mm[1:], points_mm[2:], strict=False):
         back, onward = ((end - corner) / np.linalg.norm(end - corner) for end in (before, after))
@@ -119,7 +115,7 @@ def rounded(points_mm: Points, radius_mm: float) -> Points:
 
 
 def rounded_length_mm(points_mm: Points, radius_mm: float) -> float:
-    """Length of a line of straight pieces whose corners are arcs: each saves 2 R tan(t / 2) - R t for a turn by t."""
+    """Return the length of straight pieces with arcs as corners: each saves 2 R tan(t / 2) - R t for a turn by t."""
     steps = np.diff(points_mm, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     ways = steps / lengths[:, None]
@@ -128,7 +124,7 @@ def rounded_length_mm(points_mm: Points, radius_mm: float) -> float:
 
 
 def cables(robot: Robot) -> tuple[Cable, ...]:
-    """The four cables of a robot: motor and encoder of hip and knee."""
+    """Return the four cables of a robot: motor and encoder of hip and knee."""
     leg, units = robot.leg, {unit.name: unit for unit in robot.units}
     base = next(unit for unit in robot.units if any(part.role is Role.ROD for part in unit.parts))
     far_mm = float(far_cheek_z_mm(1e-3 * robot.knee.length_mm, leg)) + leg.far_cheek_mm
@@ -138,9 +134,10 @@ def cables(robot: Robot) -> tuple[Cable, ...]:
 
 
 def _hip(actuator: Actuator, unit: Unit, board: BoardPlace, base: Unit, robot: Robot) -> tuple[Cable, Cable]:
-    """Over the back, along the outside of the casing below the board, and up behind it."""
+    """Return cables over the back, along the outside of the casing below the board, and up behind it."""
     wire, wire_mm = _wire(actuator, robot.leg.of("hip").driver)
-    back, rim = _back_mm(actuator, unit), _rim_mm(actuator)
+    back = float(_in_base(unit, np.array([0.0, 0.0, -actuator.length_mm]))[2])
+    rim = _width_mm(_backplate(actuator))
     found: list[_Run] = []
     for diameter, side, start in (
         (wire_mm, 1.0, _hole(actuator, unit, np.array([1.0, 0.0]))),
@@ -162,7 +159,7 @@ def _hip(actuator: Actuator, unit: Unit, board: BoardPlace, base: Unit, robot: R
 
 
 def _knee(actuator: Actuator, unit: Unit, board: BoardPlace, base: Unit, robot: Robot) -> tuple[Cable, Cable]:
-    """Outwards past the far cheek, on the hip's axis, and up behind the board."""
+    """Return cables outwards past the far cheek, on the hip's axis, and up behind the board."""
     wire_mm = _wire(actuator, robot.leg.of("knee").driver)[1]
     hole = _hole(actuator, unit, np.array([0.0, -1.0]))
     motor = board.behind_mm(0.5 * wire_mm + _PLAY_MM)
@@ -193,18 +190,11 @@ def _knee(actuator: Actuator, unit: Unit, board: BoardPlace, base: Unit, robot: 
 
 
 def _up(board: BoardPlace, x: float, z: float) -> list[list[float]]:
-    """The last corners: the tie, and the board's upper edge."""
     return [[x, board.tie_y_mm, z], [x, board.high_mm, z]]
 
 
-def _named(
-    joint: str,
-    found: Sequence[_Run],
-    actuator: Actuator,
-    base: Unit,
-    robot: Robot,
-) -> tuple[Cable, Cable]:
-    """The cables of a joint's motor and encoder, with their corners in the assembly's frame."""
+def _named(joint: str, found: Sequence[_Run], actuator: Actuator, base: Unit, robot: Robot) -> tuple[Cable, Cable]:
+    """Return the cables of a joint's motor and encoder, with their corners in the assembly's frame."""
     frame = unit_frame(base)
     area, diameter = _wire(actuator, robot.leg.of(joint).driver)
     section = 0.25 * np.pi * diameter**2
@@ -232,14 +222,14 @@ def _named(
 
 
 def _wire(actuator: Actuator, driver: MotorDriver) -> tuple[float, float]:
-    """Copper and diameter of the thinnest wire for the largest current that motor and driver let flow."""
+    """Return copper and diameter of the thinnest wire for the largest current that motor and driver let flow."""
     amplitude = min(peak_current_a(actuator.motor), driver.peak_current_a)
     needed = amplitude / np.sqrt(2.0) / _CURRENT_A_PER_MM2
     return next((wire for wire in _WIRES if wire[0] >= needed), _WIRES[-1])
 
 
 def _thinner(board: BoardPlace, rim: float, area_mm2: float) -> str:
-    """The cure for a wire that has no room for its bend: the thickest thinner ones that have, with as much copper."""
+    """Return the cure for a wire without room for its bend: thinner ones that have, with as much copper."""
     for area, diameter in reversed([wire for wire in _WIRES if wire[0] < area_mm2]):
         if _radius_below(board, *_around(board, rim, diameter), diameter) >= _BENDS * diameter:
             count = int(np.ceil(area_mm2 / area))
@@ -248,13 +238,12 @@ def _thinner(board: BoardPlace, rim: float, area_mm2: float) -> str:
 
 
 def _around(board: BoardPlace, rim: float, diameter: float) -> tuple[float, float]:
-    """Height of a wire along the outside of the casing, and its distance behind the board."""
+    """Return the height of a wire along the outside of the casing, and its distance behind the board."""
     under = float(np.sqrt(rim**2 - board.tie_x_mm**2)) + 0.5 * diameter + _PLAY_MM
     return under, board.behind_mm(0.5 * diameter + _PLAY_MM)
 
 
 def _backplate(actuator: Actuator) -> Part:
-    """The part of the housing that the actuator ends with."""
     parts = [part for part in actuator.parts if part.role is Role.HOUSING and part.group is Group.HOUSING]
     return min(parts, key=lambda part: (min(float(p.z0_mm) for p in part.prisms), -_width_mm(part)))
 
@@ -264,22 +253,12 @@ def _width_mm(part: Part) -> float:
 
 
 def _in_base(unit: Unit, point: Points) -> Points:
-    """A point of a unit in the base's frame, with the leg hanging down."""
+    """Return a point of a unit in the base's frame, with the leg hanging down."""
     return np.asarray(unit.turn @ point + np.array([0.0, 0.0, unit.z_mm]))
 
 
-def _back_mm(actuator: Actuator, unit: Unit) -> float:
-    """Height z of the back's outer face in the base's frame."""
-    return float(_in_base(unit, np.array([0.0, 0.0, -actuator.length_mm]))[2])
-
-
-def _rim_mm(actuator: Actuator) -> float:
-    """Radius of the casing."""
-    return _width_mm(_backplate(actuator))
-
-
 def _hole(actuator: Actuator, unit: Unit, way: Points) -> Points:
-    """Middle of the hole in the back through which a motor's wires leave it: of the widest, the one in a direction."""
+    """Return the middle of the hole in the back through which a motor's wires leave: the widest in a direction."""
     patterns = [h for p in _backplate(actuator).prisms for h in p.holes if isinstance(h, Pattern)]
     widest = max(patterns, key=lambda pattern: float(pattern.radius_mm))
     centres = [_in_base(unit, np.array([x, y, -actuator.length_mm])) for x, y in widest.centres_mm()]
@@ -287,14 +266,14 @@ def _hole(actuator: Actuator, unit: Unit, way: Points) -> Points:
 
 
 def _sensor_mm(actuator: Actuator, unit: Unit) -> float:
-    """Height z of the encoder's outer end in the base's frame."""
+    """Return the height z of the encoder's outer end in the base's frame."""
     (sensor,) = (p for p in actuator.parts if p.role is Role.ELECTRONICS and p.group is Group.HOUSING)
     end = min(float(prism.z0_mm) for prism in sensor.prisms)
     return float(_in_base(unit, np.array([0.0, 0.0, end]))[2])
 
 
 def _radius_below(board: BoardPlace, under: float, behind: float, diameter: float) -> float:
-    """The largest bend, from along the casing to behind the board, that keeps clear of the board's lower edge.
+    """Return the largest bend, from along the casing to behind the board, that keeps clear of the board's lower edge.
 
     The bend's middle lies R above and outside of its corner, the edge by e and f. The wire's half width h is free for
 

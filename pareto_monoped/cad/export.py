@@ -1,6 +1,6 @@
 """Export a design: build it as it can be built, check it, and write one folder that is either whole or not there.
 
-What the kernel's process makes for an export while this one simulates and checks: solids, drawings and pictures.
+The kernel's process makes solids, drawings and pictures while this one simulates and checks.
 """
 
 import gc
@@ -39,20 +39,18 @@ from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.strength.factors import GearLife, JointFactor, gear_life, joint_factors
 from pareto_monoped.strength.joint import LOAD_NAMES, Loads, loads_of
 
-_AT_ONCE = 6
-"""Drawings in a question: few, so that both processes end at about the same time."""
+_AT_ONCE = 6  # drawings in a question: few, so that both processes end at about the same time
+_NAMED_FAILURES = 3  # more would not fit on a line
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ordered:
     """Files that are being made, their contents by path or name; None for what is not wanted."""
 
-    solids: Future[tuple[bytes, dict[str, bytes]]] | None
-    """The STEP file of the assembly, and those of the parts."""
-    pack: Future[dict[str, bytes]] | None
-    sheets: Sequence[Future[dict[str, bytes]]]
-    """The parts' drawings, some in each."""
-    pictures: Mapping[str, Future[bytes]]
+    solids: Future[tuple[bytes, dict[str, bytes]]] | None  #: STEP files of the assembly, and of the parts by name
+    pack: Future[dict[str, bytes]] | None  #: the assembly pack: content by path
+    sheets: Sequence[Future[dict[str, bytes]]]  #: the parts' drawings by name, some in each
+    pictures: Mapping[str, Future[bytes]]  #: PNG files by name
 
     def write(self, folder: Path) -> None:
         """Do here what the kernel's process has not begun, wait for the rest, and write everything."""
@@ -73,22 +71,14 @@ class Ordered:
 
 
 def order(product: Product, record: Mapping[str, Any], formats: Collection[str]) -> Ordered:
-    """Ask for all files of the formats that the kernel's process makes.
-
-    Args:
-        product: the parts.
-        record: for the title blocks; it may still lack what is computed last.
-        formats: of ``FORMATS``.
-    """
+    """Ask for the files of the kernel's process; ``record`` is for title blocks and may lack what is computed last."""
     listed = product.listed
     # The longest first, as the last ones may be done in either process.
     pack = kernel.do(assembly_pack, listed) if "assembly" in formats else None
     solids = kernel.step_files(step_assembly(product, "monoped")) if "step" in formats else None
+    sheets = _sheets(listed.unique, origin_of(record)) if "pdf" in formats else ()
     return Ordered(
-        solids=solids,
-        pack=pack,
-        sheets=_sheets(listed.unique, origin_of(record)) if "pdf" in formats else (),
-        pictures=files.pictures(product) if "png" in formats else {},
+        solids=solids, pack=pack, sheets=sheets, pictures=files.pictures(product) if "png" in formats else {}
     )
 
 
@@ -101,16 +91,13 @@ def _sheets(parts: Sequence[ListedPart], origin: Origin) -> list[Future[dict[str
     ]
 
 
-_NAMED_FAILURES = 3  # more would not fit on a line
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportSummary:
     """What an export made."""
 
-    folder: Path  #: where it is
+    folder: Path
     record: dict[str, Any]  #: the content of its ``design.json``
-    checks: tuple[Check, ...]  #: all checks; all of them passed
+    checks: tuple[Check, ...]  #: all of them passed
     files: tuple[str, ...]  #: paths relative to the folder
     gear_life: GearLife | None  #: of the gears under strikes, where it is known
 
@@ -131,19 +118,10 @@ def export_design(
 ) -> ExportSummary:
     """Build, check and write everything about one design.
 
-    Args:
-        design: as searched; it is built with lengths of whole 0.1 mm and the real ratios, and simulated again.
-        maps: the gearboxes of both joints, or of hip and knee.
-        calibration: the jump model, for the second simulation and the MJCF.
-        out_dir: the folder to make; its parent is made too.
-        formats: some of ``FORMATS``; default all.
-        force: replace the files of an earlier export there. Other files in the folder stay.
-        hip_rad: angle of the hip in the assembly, in place of the start pose's.
-        knee_rad: angle of the knee, likewise.
-        source: where the design comes from, written into ``design.json``.
-        strength: refuse a design with a joint that has less than its required safety factor. The factors are listed
-            either way.
-        progress: called with the name of each step as it begins.
+    It is built with lengths of whole 0.1 mm and real ratios, and simulated again, in the start pose of its jump or at
+    the given angles. With ``force`` the files of an earlier export are replaced; other files in the folder stay. With
+    ``strength`` a design with a joint below its required safety factor is refused; the factors are listed either way.
+    ``source`` stands in ``design.json``. ``progress`` is called with the name of each step as it begins.
 
     Raises:
         InputError: an unknown format.
@@ -189,8 +167,7 @@ def export_design(
         progress("writing")
         with beside(out_dir) as folder:
             files.write_meshes(folder, part_files, other_files, wanted)
-            files.write_drawings(folder, product, wanted)
-            files.write_assembly_sheet(folder, product, record, wanted)
+            files.write_drawings(folder, product, record, wanted)
             files.write_models(folder, product, shown, built.arrays, built.design, calibration, wanted)
             _write_tables(folder, product, record, checks, factors, life, leg_dimensions(maps))
             ordered.write(folder)
@@ -213,11 +190,7 @@ def _collecting_rarely() -> Iterator[None]:
 
 @contextmanager
 def _second_process(*, draws: bool) -> Iterator[None]:
-    """Start the kernel's process; after an exception nobody waits for it.
-
-    Args:
-        draws: whether it will have to draw pictures, for which it can get ready at once.
-    """
+    """Start the kernel's process; after an exception nobody waits for it."""
     kernel.start()
     if draws:
         kernel.do(prepare)
@@ -256,7 +229,7 @@ def _require_passed(checks: Sequence[Check], out_dir: Path) -> None:
 
 
 def simulated_jumps(designs: Mapping[str, Design], maps: Maps, calibration: Calibration) -> dict[str, dict[str, Any]]:
-    """Status, reason and some measures of some designs' jumps, by the designs' names, as JSON values."""
+    """Return status, reason and some measures of some designs' jumps, by the designs' names, as JSON values."""
     return _jumps(designs, _evaluated(designs, maps, calibration))
 
 
@@ -265,7 +238,7 @@ def _evaluated(designs: Mapping[str, Design], maps: Maps, calibration: Calibrati
 
 
 def _loads(design: Design, results: Evaluations, row: int) -> Loads:
-    """The loads of a design's parts, from a row of the results of its jump."""
+    """Return the loads of a design's parts, from a row of the results of its jump."""
     columns = {name: getattr(results, name)[row : row + 1] for name in LOAD_NAMES if name not in LENGTHS}
     return loads_of(columns | {name: np.array([getattr(design, name)]) for name in LENGTHS})
 
@@ -284,5 +257,5 @@ def _jumps(designs: Mapping[str, Design], results: Evaluations) -> dict[str, dic
 
 
 def _plain(value: float) -> float | None:
-    """A JSON number, or None where there is none."""
+    """Return a JSON number, or None where there is none."""
     return float(value) if np.isfinite(value) else None

@@ -1,6 +1,6 @@
-"""A jump as a film, drawn without a display: the robot as it is built, with its heights and torques beside it.
+"""A jump as a film, drawn without a display and written as a GIF or, by ffmpeg, as a video.
 
-The pictures of a film as a file: an animated GIF, or a video by ffmpeg.
+It shows the robot as it is built, with its heights and torques beside it.
 """
 
 import shutil
@@ -35,6 +35,13 @@ _VIEW = View(towards=(-0.45, 1.0, -0.16))
 _FLOOR = (0.86, 0.87, 0.89)
 _MARGIN_MM = 60.0
 _COLOURS = ("#0072b2", "#d55e00")  # Okabe and Ito's blue and vermilion: base and foot, hip and knee
+_STILL: Floats = np.zeros(3)
+_GIF_COLOURS = 96  # shading needs no more, and each bit counts
+VIDEOS = {
+    ".mp4": ("mp4", ("-c:v", "libx264", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart")),
+    ".webm": ("webm", ("-c:v", "libvpx-vp9", "-crf", "30", "-b:v", "0", "-pix_fmt", "yuv420p")),
+}
+"""Suffix -> ffmpeg's name of the format, and the encoder. Both play in browsers; yuv420p is what all players know."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,12 +66,7 @@ class Moment:
 
 
 def moments(trace: Mapping[str, Floats], *, slower: float = SLOWER) -> list[Moment]:
-    """The moments of a trace that the film shows, the apex last.
-
-    Args:
-        trace: columns of ``jump.single.TRACE_COLUMNS``, each of shape (steps,).
-        slower: how many times slower than the jump the film is.
-    """
+    """Return the moments of a trace (columns of ``jump.single.TRACE_COLUMNS``) that the film shows, the apex last."""
     time = np.asarray(trace["time_s"], dtype=np.float64)
     shown = np.arange(time[0], time[-1], 1.0 / (FRAMES_PER_S * slower))
     rows = [*np.searchsorted(time, shown).tolist(), len(time) - 1]
@@ -73,18 +75,12 @@ def moments(trace: Mapping[str, Floats], *, slower: float = SLOWER) -> list[Mome
 
 
 def hold_frames() -> int:
-    """How many times the last picture is repeated."""
+    """Return how many times the last picture is repeated."""
     return round(_HOLD_S * FRAMES_PER_S)
 
 
 def film(robot: Robot, trace: Mapping[str, Floats], *, slower: float = SLOWER) -> Iterator[Image]:
-    """The pictures of a jump in order, each of shape (480, 720, 3): the robot, and beside it heights and torques.
-
-    Args:
-        robot: what jumps.
-        trace: its jump, see ``moments``.
-        slower: see ``moments``.
-    """
+    """Yield the pictures of a jump, each of shape (480, 720, 3): the robot, and beside it heights and torques."""
     pieces, floor, shown = _pieces(robot), _floor(), moments(trace, slower=slower)
     frame = _frame_of_the_film(robot, shown)
     panels, places = _panels(trace)
@@ -99,29 +95,19 @@ def film(robot: Robot, trace: Mapping[str, Floats], *, slower: float = SLOWER) -
         yield np.hstack((picture, _with_cursor(panels, places, moment.time_s)))
 
 
-_STILL: Floats = np.zeros(3)
-
-
 def _pieces(robot: Robot) -> list[_Piece]:
     found = []
     for one in instances(robot, Pose(hip_rad=0.0, knee_rad=0.0)):
-        if one.part.visibility is Visibility.INSIDE:
-            continue
-        points, triangles = shell_of(one.part, _TOLERANCE_MM)
-        at = one.in_body
-        found.append(
-            _Piece(
-                body=one.body,
-                points_mm=points @ at[:3, :3].T + at[:3, 3],
-                triangles=triangles,
-                colour=one.part.material.colour,
-            )
-        )
+        if one.part.visibility is not Visibility.INSIDE:
+            points, triangles = shell_of(one.part, _TOLERANCE_MM)
+            points = points @ one.in_body[:3, :3].T + one.in_body[:3, 3]
+            colour = one.part.material.colour
+            found.append(_Piece(body=one.body, points_mm=points, triangles=triangles, colour=colour))
     return found
 
 
 def _placed(robot: Robot, pieces: list[_Piece], moment: Moment) -> Iterator[tuple[_Piece, Floats]]:
-    """Every piece with its points in the world's frame, whose origin is on the floor."""
+    """Yield every piece with its points in the world's frame, whose origin is on the floor."""
     moved = shift(1000.0 * moment.base_x_m, 0.0, 1000.0 * moment.base_z_m)
     frames = body_frames(robot, Pose(hip_rad=moment.hip_rad, knee_rad=moment.knee_rad))
     for piece in pieces:
@@ -130,7 +116,7 @@ def _placed(robot: Robot, pieces: list[_Piece], moment: Moment) -> Iterator[tupl
 
 
 def _floor() -> tuple[Floats, NDArray[np.int64]]:
-    """A plate on which the robot stands."""
+    """Return a plate on which the robot stands."""
     x, y = 260.0, 160.0
     points = np.array([(a, b, c) for c in (-8.0, 0.0) for a, b in ((-x, -y), (x, -y), (x, y), (-x, y))])
     quads = ((3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
@@ -139,7 +125,7 @@ def _floor() -> tuple[Floats, NDArray[np.int64]]:
 
 
 def _frame_of_the_film(robot: Robot, shown: list[Moment]) -> Faces:
-    """Faces without triangles, as large as the whole jump: every picture so has one scale and one place."""
+    """Return faces without triangles, as large as the whole jump, so that all pictures have one scale and place."""
     reach = 1000.0 * (robot.design.thigh_length_m + robot.design.shank_length_m)
     top = 1000.0 * max(moment.base_z_m for moment in shown) + 160.0
     x = np.array([1000.0 * moment.base_x_m for moment in shown])
@@ -147,13 +133,12 @@ def _frame_of_the_film(robot: Robot, shown: list[Moment]) -> Faces:
     high = np.array([x.max() + 0.5 * reach, 180.0, top])
     corners = np.array([[(low, high)[k][i] for i, k in enumerate(which)] for which in np.ndindex(2, 2, 2)])
     seen = corners @ _VIEW.axes().T
-    return Faces(
-        box_mm=np.stack([seen.min(axis=0), seen.max(axis=0)]), corners_mm=np.zeros((0, 3, 3)), light=np.zeros(0)
-    )
+    box = np.stack([seen.min(axis=0), seen.max(axis=0)])
+    return Faces(box_mm=box, corners_mm=np.zeros((0, 3, 3)), light=np.zeros(0))
 
 
 def _panels(trace: Mapping[str, Floats]) -> tuple[Image, tuple[float, float, float, int, int]]:
-    """Curves of the whole jump; time at the left and right edge, and these edges with top and bottom in pixels."""
+    """Return curves of the whole jump; time at left and right edge, and these edges with top and bottom in pixels."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -180,7 +165,7 @@ def _panels(trace: Mapping[str, Floats]) -> tuple[Image, tuple[float, float, flo
 
 
 def _with_cursor(panels: Image, places: tuple[float, float, float, int, int], time_s: float) -> Image:
-    """The curves with a line at a moment."""
+    """Return the curves with a line at a moment."""
     span, left, right, top, bottom = places
     image = panels.copy()
     column = min(round(left + (right - left) * time_s / span), image.shape[1] - 1)
@@ -188,16 +173,8 @@ def _with_cursor(panels: Image, places: tuple[float, float, float, int, int], ti
     return image
 
 
-VIDEOS = {
-    ".mp4": ("mp4", ("-c:v", "libx264", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart")),
-    ".webm": ("webm", ("-c:v", "libvpx-vp9", "-crf", "30", "-b:v", "0", "-pix_fmt", "yuv420p")),
-}
-"""Suffix -> ffmpeg's name of the format, and the encoder. Both play in browsers; yuv420p is what all players know."""
-_FILM_FILES_COLOURS = 96  # of a GIF; shading needs no more, and each bit counts
-
-
 def write_gif(path: Path, pictures: Iterable[Image], *, force: bool = False) -> int:
-    """Write an animated GIF that repeats; returns the number of pictures.
+    """Write an animated GIF that repeats, and return the number of pictures.
 
     Raises:
         OutputError: it cannot be written, or would replace a file of another kind.
@@ -205,7 +182,7 @@ def write_gif(path: Path, pictures: Iterable[Image], *, force: bool = False) -> 
     from PIL import Image as Pillow
 
     frames = [Pillow.fromarray(picture) for picture in pictures]
-    palette = frames[len(frames) // 2].quantize(colors=_FILM_FILES_COLOURS, dither=Pillow.Dither.NONE)
+    palette = frames[len(frames) // 2].quantize(colors=_GIF_COLOURS, dither=Pillow.Dither.NONE)
     drawn = [frame.quantize(palette=palette, dither=Pillow.Dither.NONE) for frame in frames]
     rest = 1000 // FRAMES_PER_S
     times = [rest] * (len(drawn) - 1) + [rest * hold_frames()]
@@ -217,44 +194,31 @@ def write_gif(path: Path, pictures: Iterable[Image], *, force: bool = False) -> 
 
 
 def encoder() -> str:
-    """The program ffmpeg: that of the system, else that of the extra ``video``.
-
-    Raises:
-        InputError: there is none.
-    """
+    """Return the program ffmpeg of the system, else of the extra ``video``; ``InputError`` if there is none."""
     found = shutil.which("ffmpeg")
     if found is not None:
         return found
     require_extra("video", "--video", instead="install the program ffmpeg, or use --gif")
     import imageio_ffmpeg
 
-    program: str = imageio_ffmpeg.get_ffmpeg_exe()
-    return program
+    return str(imageio_ffmpeg.get_ffmpeg_exe())
 
 
 def require_gif(path: Path) -> None:
-    """Refuse a name that is not one of a GIF, before anything is drawn.
-
-    Raises:
-        InputError: the suffix is another one.
-    """
+    """Refuse a name that is not one of a GIF, with ``InputError``, before anything is drawn."""
     if path.suffix.lower() != ".gif":
         raise InputError(complaint("--gif", str(path), "a file ending in .gif", "correct the name, or use --video"))
 
 
 def require_video(path: Path) -> str:
-    """The encoder of a video file, before anything is drawn.
-
-    Raises:
-        InputError: the suffix is of no format that we write, or there is no encoder.
-    """
+    """Return the encoder of a video file, before anything is drawn; ``InputError`` if it has no format or encoder."""
     if path.suffix.lower() not in VIDEOS:
         raise InputError(complaint("--video", str(path), f"a file ending in {' or '.join(VIDEOS)}", "correct the name"))
     return encoder()
 
 
 def write_video(path: Path, pictures: Iterable[Image], *, force: bool = False) -> int:
-    """Write a video; returns the number of pictures.
+    """Write a video, and return the number of pictures.
 
     Raises:
         InputError: see ``require_video``.
@@ -276,10 +240,9 @@ def write_video(path: Path, pictures: Iterable[Image], *, force: bool = False) -
 
 
 def _held(pictures: Iterable[Image]) -> Iterator[Image]:
-    """The pictures, and the last one for a while longer."""
-    last = None
+    """Yield the pictures, and the last one for a while longer."""
+    last: Image | None = None
     for last in pictures:
         yield last
-    for _ in range(hold_frames() if last is not None else 0):
-        assert last is not None
-        yield last
+    if last is not None:
+        yield from [last] * hold_frames()

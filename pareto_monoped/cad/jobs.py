@@ -36,15 +36,9 @@ class Job:
     knee_motor: Motor | None = None  #: of the knee's actuator; None where both have the same
 
     def maps(self) -> JointMaps:
-        """The gearboxes of both joints.
-
-        Raises:
-            MotorError: a motor has no gearbox at any ratio.
-        """
-        return JointMaps(
-            hip=map_of(self.motor, self.rules),
-            knee=map_of(self.motor if self.knee_motor is None else self.knee_motor, self.rules),
-        )
+        """Return the gearboxes of both joints; ``MotorError`` if a motor has none."""
+        hip = map_of(self.motor, self.rules)
+        return JointMaps(hip=hip, knee=hip if self.knee_motor is None else map_of(self.knee_motor, self.rules))
 
 
 def case_job(
@@ -60,19 +54,9 @@ def case_job(
     knee_rad: float | None = None,
     strength: bool | None = None,
 ) -> Job:
-    """The job for a row of the paper's Table I with the default calibration, our best model of the paper's robot.
+    """Return the job for a row of the paper's Table I with the default calibration, our best model of that robot.
 
-    Args:
-        case: name of the row.
-        motor: name or TOML file of the motor; default the paper's.
-        knee_motor: likewise, of the knee's; default the same.
-        rules: of the gearboxes.
-        folder: where to.
-        formats: some of ``FORMATS``; default all.
-        force: replace an earlier export there.
-        hip_rad: angle of the hip in the assembly, instead of that of the start pose.
-        knee_rad: angle of the knee, likewise.
-        strength: whether it must hold; default as for a study with this calibration.
+    ``strength`` defaults to that of a study with this calibration; ``Job`` describes the other arguments.
 
     Raises:
         InputError: an unknown format.
@@ -106,17 +90,9 @@ def trial_job(
     knee_rad: float | None = None,
     strength: bool | None = None,
 ) -> Job:
-    """The job for one trial of a study, with its motors and its calibration as the study stores them.
+    """Return the job for one trial of a study, with its motors and its calibration as the study stores them.
 
-    Args:
-        data: the study.
-        trial: the trial's number.
-        folder: where to.
-        formats: some of ``FORMATS``; default all.
-        force: replace an earlier export there.
-        hip_rad: angle of the hip in the assembly, instead of that of the start pose.
-        knee_rad: angle of the knee, likewise.
-        strength: whether it must hold; default as the study asked.
+    ``strength`` defaults to what the study asks; ``Job`` describes the other arguments.
 
     Raises:
         InputError: an unknown format.
@@ -148,15 +124,9 @@ def front_jobs(
     force: bool = False,
     strength: bool | None = None,
 ) -> list[Job]:
-    """The jobs for the designs on a study's front, from the lowest jump to the highest.
+    """Return the jobs for the designs on a study's front, from the lowest jump to the highest.
 
-    Args:
-        data: the study.
-        folder: holds a folder ``trial_N`` per design.
-        every: take only each N-th design, beginning with the first.
-        formats: some of ``FORMATS``; default all.
-        force: replace earlier exports.
-        strength: whether they must hold; default as the study asked.
+    ``folder`` gets a folder ``trial_N`` per design; only each ``every``-th design is taken, beginning with the first.
 
     Raises:
         InputError: an unknown format.

@@ -1,11 +1,7 @@
-"""A robot as a product: its unique parts with meshes and facts of their solids, and all placed instances.
-
-Where every instance of every part stands: the robot taken apart into named, placed instances.
+"""A robot as a product: unique parts with meshes and facts of their solids, and named instances in their places.
 
 Frames are 4 x 4 matrices in millimetres. The assembly's frame has its origin on the hip axis in the middle plane of the
 leg, x forward, y to the left (the joint axes), z up, as the body frames of ``robot`` at zero joint angles.
-
-Boxes pulled apart along one axis, for exploded views.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -32,6 +28,7 @@ ACTUATOR_UNITS: Mapping[str, str] = {"hip_actuator": "hip", "knee_actuator": "kn
 """The units that are actuators, each with the joint that it drives."""
 _TURNED_BY: Mapping[str, str] = {**ACTUATOR_UNITS, "thigh": "knee"}
 """The joint with which the moving parts of a unit turn; in the thigh these are the chain's sprocket and its axle."""
+_APART_MM = 6.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,7 +39,7 @@ class Pose:
     knee_rad: float
 
     def angle_rad(self, joint: str) -> float:
-        """Angle of a joint, ``hip`` or ``knee``."""
+        """Return the angle of a joint, ``hip`` or ``knee``."""
         return {"hip": self.hip_rad, "knee": self.knee_rad}[joint]
 
 
@@ -51,8 +48,8 @@ class Instance:
     """One instance of a part."""
 
     name: str  #: unique in the assembly, ``unit/part`` with a number if there are several
-    unit: str  #: name of its unit
-    part: Part  #: the part; instances of one part of one unit share it
+    unit: str
+    part: Part  #: instances of one part of one unit share it
     body: str  #: ``base``, ``thigh`` or ``shank``: what its mass counts for
     in_body: Matrix  #: from the part's frame to the body frame, at zero joint angles
     moves: Matrix  #: the same at the asked pose, with what turns inside the actuators turned
@@ -60,7 +57,7 @@ class Instance:
 
 
 def instances(robot: Robot, pose: Pose, *, only: str | None = None) -> tuple[Instance, ...]:
-    """Every instance of every part of a robot in a pose, or of the unit named ``only``."""
+    """Return every instance of every part of a robot in a pose, or of the unit named ``only``."""
     frames = body_frames(robot, pose)
     found = []
     for unit in robot.units:
@@ -88,7 +85,7 @@ def instances(robot: Robot, pose: Pose, *, only: str | None = None) -> tuple[Ins
 
 
 def body_frames(robot: Robot, pose: Pose) -> dict[str, Matrix]:
-    """Forward kinematics: from each body frame to the assembly's frame."""
+    """Return the matrices from each body frame to the assembly's frame (forward kinematics)."""
     base = np.eye(4)
     thigh = base @ turn_y(pose.hip_rad)
     shank = thigh @ shift(0.0, 0.0, -1000.0 * robot.design.thigh_length_m) @ turn_y(pose.knee_rad)
@@ -96,7 +93,7 @@ def body_frames(robot: Robot, pose: Pose) -> dict[str, Matrix]:
 
 
 def unit_frame(unit: Unit) -> Matrix:
-    """From a unit's frame to its body's frame."""
+    """Return the matrix from a unit's frame to its body's frame."""
     frame = np.eye(4)
     frame[:3, :3] = PART_TO_BODY @ unit.turn
     frame[:3, 3] = PART_TO_BODY @ np.array([0.0, 0.0, unit.z_mm])
@@ -104,7 +101,7 @@ def unit_frame(unit: Unit) -> Matrix:
 
 
 def turn_y(angle_rad: float) -> Matrix:
-    """Rotation about the y axis."""
+    """Return a rotation about the y axis."""
     matrix = np.eye(4)
     cos, sin = np.cos(angle_rad), np.sin(angle_rad)
     matrix[0, 0], matrix[0, 2], matrix[2, 0], matrix[2, 2] = cos, sin, -sin, cos
@@ -112,7 +109,7 @@ def turn_y(angle_rad: float) -> Matrix:
 
 
 def turn_z(angle_rad: float) -> Matrix:
-    """Rotation about the z axis."""
+    """Return a rotation about the z axis."""
     matrix = np.eye(4)
     cos, sin = np.cos(angle_rad), np.sin(angle_rad)
     matrix[0, 0], matrix[0, 1], matrix[1, 0], matrix[1, 1] = cos, -sin, sin, cos
@@ -120,14 +117,14 @@ def turn_z(angle_rad: float) -> Matrix:
 
 
 def shift(x: float, y: float, z: float) -> Matrix:
-    """Translation."""
+    """Return a translation."""
     matrix = np.eye(4)
     matrix[:3, 3] = (x, y, z)
     return matrix
 
 
 def _places(robot: Robot, unit: Unit, part: Part, output_rad: float) -> Iterator[Matrix]:
-    """From the frame of each instance of a part to the unit's body frame, with the output turned by ``output_rad``."""
+    """Yield the matrix from each instance of a part to the unit's body frame, the output turned by ``output_rad``."""
     frame = unit_frame(unit)
     # The joint axis is the unit's z axis up to its sign.
     theta = output_rad * float(frame[1, 2])
@@ -146,14 +143,12 @@ def _places(robot: Robot, unit: Unit, part: Part, output_rad: float) -> Iterator
 
 
 def turns(actuator: "Actuator | None", part: Part, theta_rad: float) -> tuple[float, Callable[[float], float]]:
-    """How a part turns about its unit's z axis when the unit's output has turned by ``theta_rad``.
+    """Return the turn of a part about its unit's z axis when the unit's output has turned by ``theta_rad``.
 
-    A planetary gear with a fixed ring: the carrier is the output, the sun turns by the ratio, and a planet turns
-    against its carrier by -z_ring / z_planet of the carrier's angle. The planet's outline is drawn for the place on the
-    x axis; at angle a it is turned on by a z_sun / z_planet against its carrier to meet the sun's teeth.
-
-    Returns:
-        The angle of the whole circle of instances, and from an instance's place on it to its own turn on its place.
+    The first value turns the whole circle of instances, the second leads from an instance's angle on it to its own turn
+    on its place. A planetary gear has a fixed ring: the carrier is the output, the sun turns by the ratio, and a planet
+    turns against its carrier by -z_ring / z_planet of the carrier's angle. The planet's outline is drawn for the place
+    on the x axis; at angle a it is turned on by a z_sun / z_planet against its carrier to meet the sun's teeth.
     """
     if actuator is None:
         return (theta_rad if part.group is Group.KNEE_DRIVE else 0.0), lambda _: 0.0
@@ -173,8 +168,8 @@ class ListedPart:
     """A part that is made once and used ``count`` times in the robot."""
 
     name: str  #: unique in the product and safe as a file name
-    part: Part  #: the record
-    count: int  #: how often the robot has it
+    part: Part
+    count: int
     units: tuple[str, ...]  #: the units that have it
 
 
@@ -197,17 +192,15 @@ class Listed:
 class Product:
     """A robot in a pose with everything that its files are made from."""
 
-    #: robot, pose: what and how
     robot: Robot
     pose: Pose
     unique: tuple[UniquePart, ...]  #: every part that differs from all others, in the order of the assembly
     instances: tuple[Instance, ...]  #: every part in its place
     kinds: tuple[int, ...]  #: for each instance, the index of its part in ``unique``
-    #: What the kernel finds about the solid of each unique part, once it has built them
-    solids: Future[list[SolidFacts]]
+    solids: Future[list[SolidFacts]]  #: what the kernel finds about each unique part's solid, once it has built them
 
     def placed(self) -> Iterator[tuple[Instance, UniquePart]]:
-        """Every instance with its unique part."""
+        """Yield every instance with its unique part."""
         for instance, index in zip(self.instances, self.kinds, strict=True):
             yield instance, self.unique[index]
 
@@ -231,28 +224,15 @@ def build_product(robot: Robot, pose: Pose) -> Product:
     for members in order.values():
         part = members[0].part
         units = tuple(dict.fromkeys(member.unit for member in members))
-        unique.append(
-            UniquePart(
-                name=part_file_name(units, part.name),
-                part=part,
-                mesh=mesh_of(part),
-                count=len(members),
-                units=units,
-            )
-        )
+        name, count = part_file_name(units, part.name), len(members)
+        unique.append(UniquePart(name=name, part=part, mesh=mesh_of(part), count=count, units=units))
     index = {key: k for k, key in enumerate(order)}
-    return Product(
-        robot=robot,
-        pose=pose,
-        unique=tuple(unique),
-        instances=found,
-        kinds=tuple(index[id(instance.part)] for instance in found),
-        solids=solids,
-    )
+    kinds = tuple(index[id(instance.part)] for instance in found)
+    return Product(robot=robot, pose=pose, unique=tuple(unique), instances=found, kinds=kinds, solids=solids)
 
 
 def step_assembly(product: Product, name: str) -> StepAssembly:
-    """What the kernel writes a product's STEP files from."""
+    """Return what the kernel writes a product's STEP files from."""
     units: dict[str, list[StepPlacement]] = {unit.name: [] for unit in product.robot.units}
     for instance, unique in product.placed():
         units[instance.unit].append(StepPlacement(part=unique.name, matrix=instance.world))
@@ -264,28 +244,15 @@ def step_assembly(product: Product, name: str) -> StepAssembly:
 
 
 def part_file_name(units: tuple[str, ...], part_name: str) -> str:
-    """Name of a part over all units: that of an actuator's part begins with the unit, or just ``actuator`` for both."""
+    """Return a part's name over all units: an actuator's part is named after its unit, or ``actuator`` for both."""
     actuators = [unit for unit in units if unit in ACTUATOR_UNITS]
     if not actuators:
         return part_name
     return f"{actuators[0] if len(actuators) == 1 else 'actuator'}_{part_name}"
 
 
-def extent_mm(mesh: Mesh) -> NDArray[np.float64]:
-    """Size of a part along its axes, shape (3,)."""
-    return np.asarray(mesh.points_mm.max(axis=0) - mesh.points_mm.min(axis=0))
-
-
-_APART_MM = 6.0
-
-
 def pulled_apart(boxes_mm: NDArray[np.float64], axis: int) -> list[float]:
-    """How far each box moves along an axis so that boxes that lie behind each other come apart.
-
-    Args:
-        boxes_mm: low and high corners, shape (n, 6).
-        axis: 0, 1 or 2.
-    """
+    """Return how far boxes, corners of shape (n, 6), move along an axis so that those behind each other come apart."""
     low, high = boxes_mm[:, axis], boxes_mm[:, axis + 3]
     order = np.argsort(0.5 * (low + high), kind="stable")
     moved = np.zeros(len(boxes_mm))
@@ -306,6 +273,6 @@ def pulled_apart(boxes_mm: NDArray[np.float64], axis: int) -> list[float]:
 
 
 def _beside(one: NDArray[np.float64], other: NDArray[np.float64], axis: int) -> bool:
-    """Whether two boxes do not lie behind each other along the axis."""
+    """Return whether two boxes do not lie behind each other along the axis."""
     across = [k for k in range(3) if k != axis]
     return any(one[k] >= other[k + 3] or other[k] >= one[k + 3] for k in across)

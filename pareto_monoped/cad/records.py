@@ -1,9 +1,4 @@
-"""An export again, from its ``design.json``; a record that contradicts itself is refused.
-
-Compare JSON values, numbers to within a tolerance, and say where they differ.
-
-Whether the export that a job asks for exists already, complete and up to date.
-"""
+"""An export again from its ``design.json``, and whether an export exists already; contradictory records are refused."""
 
 import json
 import math
@@ -30,8 +25,7 @@ class Difference:
     """A place where two values differ."""
 
     field: str  #: its keys from the outside in, with dots between them
-    #: found, expected: what stands there; ``ABSENT`` where there is nothing
-    found: Any
+    found: Any  #: what stands there; ``ABSENT`` where there is nothing
     expected: Any
 
 
@@ -39,15 +33,12 @@ ABSENT = "nothing"
 
 
 def difference(found: Any, expected: Any, *, rel_tolerance: float, field: str = "") -> Difference | None:
-    """The first place where two JSON values differ, None if there is none."""
+    """Return the first place where two JSON values differ, None if there is none."""
     if isinstance(found, dict) and isinstance(expected, dict):
         for key in (*expected, *(key for key in found if key not in expected)):
-            inner = difference(
-                found.get(key, ABSENT),
-                expected.get(key, ABSENT),
-                rel_tolerance=rel_tolerance,
-                field=f"{field}.{key}" if field else str(key),
-            )
+            at = f"{field}.{key}" if field else str(key)
+            a, b = found.get(key, ABSENT), expected.get(key, ABSENT)
+            inner = difference(a, b, rel_tolerance=rel_tolerance, field=at)
             if inner is not None:
                 return inner
         return None
@@ -66,19 +57,19 @@ _NOT_COMPARED = ("jumps", "formats", "files")
 """Keys of a record whose values a job does not fix: formats may be more, the jumps would have to be simulated."""
 _GIVEN = ("made_by", "source", "searched", "motor_data", "calibration_data")
 """Keys whose values the job gives; all others are computed, and another machine may round them differently."""
-REL_TOLERANCE = 1e-9
-"""Of numbers that another machine may round in another way."""
+REL_TOLERANCE = 1e-9  #: Of numbers that another machine may round in another way.
+_JUMP_REL_TOLERANCE = 1e-3
+"""Of height and energy: rounding on another machine grows in a jump, by the audit's limit to a percent at worst."""
+_RATIOS = ("hip_ratio", "knee_ratio")
+"""Variables that a design is built with as its gearboxes have them, which another version may choose differently."""
 
 
 def is_made(job: Job, *, any_pose: bool = False) -> bool:
-    """Whether the job's folder holds this very export: same version, design, motor, calibration, source and pose.
+    """Return whether the job's folder holds this very export, by version, design, motor, calibration, source and pose.
 
     Its record must be what this version would write, apart from the jumps, which are not simulated for this. It must
-    have the job's formats, and every file that it lists must be there and not empty.
-
-    Args:
-        job: what is asked for.
-        any_pose: whether the assembly may stand in another pose than the job's.
+    have the job's formats, and every file that it lists must be there and not empty. With ``any_pose`` the assembly may
+    stand in another pose than the job's.
     """
     try:
         record = read_json(job.folder / RECORD)
@@ -96,19 +87,17 @@ def is_made(job: Job, *, any_pose: bool = False) -> bool:
 
 
 def _is_whole(folder: Path, record: dict[str, Any]) -> bool:
-    """Whether all listed files are there, and the list has what the record's formats make."""
+    """Return whether all listed files are there, and the list has what the record's formats make."""
     names = [str(name) for name in record["files"]]
     needed = [*ALWAYS, *(path for name in record["formats"] for path, _ in FILES[name])]
     if record["jumps"]["as_built"]["status"] == "cannot_stand":
         needed = [path for path in needed if path != "model/monoped.xml"]
-    listed = all(
-        any(name == path or (path.endswith("/") and name.startswith(path)) for name in names) for path in needed
-    )
+    listed = all(any(name == path or (path[-1] == "/" and name.startswith(path)) for name in names) for path in needed)
     return listed and all((folder / name).is_file() and (folder / name).stat().st_size > 0 for name in names)
 
 
 def expected_record(job: Job) -> dict[str, Any]:
-    """The record that this version would write, without what is not compared."""
+    """Return the record that this version would write, without what is not compared."""
     maps = job.maps()
     built = built_of(job.design, maps, job.calibration, hip_rad=job.hip_rad, knee_rad=job.knee_rad)
     record = design_record(
@@ -124,12 +113,6 @@ def expected_record(job: Job) -> dict[str, Any]:
     return {key: value for key, value in record.items() if key not in _NOT_COMPARED}
 
 
-_JUMP_REL_TOLERANCE = 1e-3
-"""Of height and energy: rounding on another machine grows in a jump, by the audit's limit to a percent at worst."""
-_RATIOS = ("hip_ratio", "knee_ratio")
-"""Variables that a design is built with as its gearboxes have them, which another version may choose differently."""
-
-
 def record_job(
     path: Path,
     *,
@@ -138,14 +121,9 @@ def record_job(
     force: bool = False,
     note: Callable[[str], None] = lambda _: None,
 ) -> Job:
-    """The job that makes an export again from its ``design.json``: the same bytes, by the same version.
+    """Return the job that makes an export again from its ``design.json``: the same bytes, by the same version.
 
-    Args:
-        path: the record.
-        folder: where to.
-        formats: some of ``FORMATS``; default those of the record.
-        force: replace an earlier export there.
-        note: called with a line of text if another version made the record.
+    ``note`` is called with a line of text if another version made the record.
 
     Raises:
         InputError: the file is missing, or no record of an export, or its motor or calibration is impossible, or a
@@ -195,10 +173,9 @@ def record_job(
 
 
 def _contradiction(record: Mapping[str, Any], job: Job, *, same_version: bool) -> Difference | None:
-    """The first field of a record that does not follow from its design, motor and calibration.
+    """Return the first field of a record that does not follow from its design, motor and calibration.
 
-    Another version may choose other gearboxes and weigh other parts. What it built is then only compared where no
-    version differs.
+    Another version may choose other gearboxes and weigh other parts: then only what no version changes is compared.
     """
     # A list of files follows from the formats, and a folder need not have all of them any more.
     found = {key: value for key, value in record.items() if key not in ("formats", "files")}
@@ -224,18 +201,11 @@ def _contradiction(record: Mapping[str, Any], job: Job, *, same_version: bool) -
 
 
 def _short(value: Any) -> str:
-    """A value in a message of one line."""
     text = json.dumps(value)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def _parsed(path: Path) -> Mapping[str, Any]:
-    """The content of a record.
-
-    Raises:
-        OSError: it cannot be read.
-        ValueError: it is no JSON object; the message says where the text breaks off.
-    """
     try:
         found = read_json(path)
     except json.JSONDecodeError as problem:
@@ -250,13 +220,12 @@ def _parsed(path: Path) -> Mapping[str, Any]:
 
 
 def _design(searched: Mapping[str, Any]) -> Design:
-    """The design of a record; optional variables that it does not name have their defaults."""
-    values = DEFAULTS | dict(searched)
-    return Design.from_array([_finite(values, name) for name in NAMES])
+    """Return the design of a record; optional variables that it does not name have their defaults."""
+    return Design.from_array([_finite(DEFAULTS | dict(searched), name) for name in NAMES])
 
 
 def _rules(name: Any) -> RuleSet:
-    """The rules of a record, which names them if they are not those of the paper."""
+    """Return the rules of a record, which names them if they are not those of the paper."""
     for rules in RULE_SETS:
         if name == rules:
             return rules
@@ -264,14 +233,14 @@ def _rules(name: Any) -> RuleSet:
 
 
 def _object(record: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    """A field of a record that holds fields of its own."""
+    """Return a field of a record that holds fields of its own."""
     if not isinstance(record[name], dict):
         raise ValueError(f"{name} has no fields")
     return dict(record[name])
 
 
 def _motors(record: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any] | None]:
-    """Values of the motor of a record, or of the hip's, and of the knee's where it has another one."""
+    """Return the values of a record's motor, or of the hip's and of the knee's where these differ."""
     found = _object(record, "motor_data")
     if set(found) != {"hip", "knee"}:
         return dict(found), None
@@ -279,14 +248,14 @@ def _motors(record: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any] |
 
 
 def _names(record: Mapping[str, Any], name: str) -> list[str]:
-    """A field of a record that is a list of names."""
+    """Return a field of a record that is a list of names."""
     if not isinstance(record[name], list):
         raise ValueError(f"{name} = {_short(record[name])} is no list")
     return [str(one) for one in record[name]]
 
 
 def _finite(record: Mapping[str, Any], name: str) -> float:
-    """A field of a record that is a number."""
+    """Return a field of a record that is a number."""
     value = record[name]
     if not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
         raise ValueError(f"{name} = {_short(value)} is not a number")

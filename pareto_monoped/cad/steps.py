@@ -1,6 +1,6 @@
 """The steps of putting an assembly together: what comes to what, from where, and which screws are then driven.
 
-Take an assembly apart, two halves at a time: the reverse is the order in which it goes together.
+The assembly is taken apart, two halves at a time: the reverse is the order in which it goes together.
 
 Wilson and Latombe (Geometric reasoning about mechanical assembly, 1994): among bodies with fixed ways out, let i point
 to j where i, moved along a direction, runs into j. A set that contains all that its members point to can leave in this
@@ -17,10 +17,10 @@ from pareto_monoped.cad.product import ACTUATOR_UNITS
 
 Members = frozenset[int]
 
-_PIECE = 3
-"""Cost of every piece into which the rest falls, over that of a cut through a link: both are our own choice."""
-_CUT_ACTUATOR = 10
-"""Cost of a cut through an actuator, over that through a link: more than there are links."""
+_PIECE = 3  # cost of every piece into which the rest falls, over that of a cut through a link: both are our own choice
+_CUT_ACTUATOR = 10  # cost of a cut through an actuator, over that through a link: more than there are links
+MOST_ADDED = 4  #: Additions in a step; more would not be told apart in its picture.
+_BY_HAND = 3  # bodies that need no step of their own to be put together, if they need no screws
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,37 +59,26 @@ def take_apart(blocking: Blocking, members: Members | None = None) -> Assembly:
     if not rest:
         # Fasteners only: any one of them can be put aside.
         first = min(everything)
-        return Joined(
-            kept=take_apart(blocking, everything - {first}),
-            added=Whole(members=frozenset({first})),
-            out=DIRECTIONS[0],
-            fasteners=(),
-        )
+        aside = Whole(members=frozenset({first}))
+        return Joined(kept=take_apart(blocking, everything - {first}), added=aside, out=DIRECTIONS[0], fasteners=())
     if len(rest) == 1:
-        return Joined(
-            kept=Whole(members=rest),
-            added=Whole(members=frozenset()),
-            out=DIRECTIONS[0],
-            fasteners=tuple(sorted(undone)),
-        )
-    split = _best_split(blocking, rest, undone)
+        nothing = Whole(members=frozenset())
+        return Joined(kept=Whole(members=rest), added=nothing, out=DIRECTIONS[0], fasteners=tuple(sorted(undone)))
+    split = _best_split(blocking, rest)
     if split is None:
         lasting = _masks(blocking.lasting[np.ix_(sorted(everything), sorted(everything))])
         return Whole(members=everything, stuck=len(list(_pieces(lasting, (1 << len(lasting)) - 1))) > 1)
     out, leaving = split
     leaving, staying, crossing = _shared(blocking, out, leaving, rest - leaving, undone)
     if len(leaving) > len(staying):
-        leaving, staying, out = staying, leaving, _opposite(out)
-    return Joined(
-        kept=take_apart(blocking, staying),
-        added=take_apart(blocking, leaving),
-        out=out,
-        fasteners=tuple(sorted(crossing)),
-    )
+        leaving, staying = staying, leaving
+        out = ("-" if out[0] == "+" else "+") + out[1]
+    kept, added = take_apart(blocking, staying), take_apart(blocking, leaving)
+    return Joined(kept=kept, added=added, out=out, fasteners=tuple(sorted(crossing)))
 
 
 def stuck(assembly: Assembly) -> Iterator[Members]:
-    """The wholes of an assembly that should come apart and do not."""
+    """Yield the wholes of an assembly that should come apart and do not."""
     if isinstance(assembly, Whole):
         if assembly.stuck:
             yield assembly.members
@@ -99,7 +88,7 @@ def stuck(assembly: Assembly) -> Iterator[Members]:
 
 
 def _undone(blocking: Blocking, members: Members) -> Members:
-    """The fasteners that can be undone, one after the other."""
+    """Return the fasteners that can be undone, one after the other."""
     undone: set[int] = set()
     waiting = {k for k in members if blocking.bodies[k].is_fastener}
     while True:
@@ -111,8 +100,8 @@ def _undone(blocking: Blocking, members: Members) -> Members:
         waiting -= free
 
 
-def _best_split(blocking: Blocking, rest: Members, undone: Members) -> tuple[str, Members] | None:
-    """A direction and a set that can leave in it: it cuts the fewest units, then it leaves the most balanced halves."""
+def _best_split(blocking: Blocking, rest: Members) -> tuple[str, Members] | None:
+    """Return a direction and a set that can leave in it: fewest units are cut, then the halves are most balanced."""
     order = sorted(rest)
     everything = (1 << len(order)) - 1
     touching = _masks(blocking.touching[np.ix_(order, order)])
@@ -137,14 +126,14 @@ def _best_split(blocking: Blocking, rest: Members, undone: Members) -> tuple[str
 
 
 def _edges(blocking: Blocking, direction: str, order: list[int]) -> Bools:
-    """True at (i, j) where i takes j with it: it runs into j, or is tied to it."""
+    """Return true at (i, j) where i takes j with it: it runs into j, or is tied to it."""
     rows = np.stack([blocking.blocked(direction, k) for k in order])[:, order]
     chosen = np.ix_(order, order)
     return np.asarray(rows | blocking.tied[chosen] | blocking.lasting[chosen])
 
 
 def _closure(edges: Bools) -> Bools:
-    """What each node reaches, itself included."""
+    """Return what each node reaches, itself included."""
     reach = edges | np.eye(len(edges), dtype=bool)
     # Warshall 1962: ways over the first k nodes.
     for k in range(len(reach)):
@@ -155,18 +144,10 @@ def _closure(edges: Bools) -> Bools:
 def _candidates(
     blocking: Blocking, order: Sequence[int], reach: Sequence[int], touching: Sequence[int]
 ) -> Iterator[int]:
-    """Sets that can leave and hold together: what units, and then single bodies, take with them.
+    """Yield masks of sets that can leave and hold together: what units, and then single bodies, take with them.
 
-    Of a set in several pieces each piece that runs into no other can leave by itself.
-
-    Args:
-        blocking: the bodies.
-        order: which of them are looked at.
-        reach: per body a mask of what it takes with it.
-        touching: per body a mask of what it touches.
-
-    Yields:
-        masks of sets.
+    Of a set in several pieces each piece that runs into no other can leave by itself. ``reach`` and ``touching`` have
+    per body a mask of what it takes with it and of what it touches.
     """
     units = [blocking.bodies[k].unit for k in order]
     seeds = [_united(reach, (k for k, name in enumerate(units) if name == unit)) for unit in dict.fromkeys(units)]
@@ -179,12 +160,11 @@ def _candidates(
 
 
 def _masks(rows: Bools) -> list[int]:
-    """Each row as an integer whose bit m is the row's element m."""
+    """Return each row as an integer whose bit m is the row's element m."""
     return [int.from_bytes(row.tobytes(), "little") for row in np.packbits(rows, axis=1, bitorder="little")]
 
 
 def _bits(mask: int) -> Iterator[int]:
-    """Numbers of the bits that are set, from the lowest."""
     while mask:
         low = mask & -mask
         yield low.bit_length() - 1
@@ -192,7 +172,6 @@ def _bits(mask: int) -> Iterator[int]:
 
 
 def _united(masks: Sequence[int], members: Iterable[int]) -> int:
-    """All that some of the masks hold."""
     found = 0
     for k in members:
         found |= masks[k]
@@ -200,7 +179,7 @@ def _united(masks: Sequence[int], members: Iterable[int]) -> int:
 
 
 def _united_in(masks: Sequence[int], members: int) -> int:
-    """The same for members that are the bits of a mask."""
+    """Return the same for members that are the bits of a mask."""
     found = 0
     while members:
         low = members & -members
@@ -210,7 +189,7 @@ def _united_in(masks: Sequence[int], members: int) -> int:
 
 
 def _pieces(touching: Sequence[int], mask: int) -> Iterator[int]:
-    """The pieces into which a set of bodies falls, as masks, from that of the lowest body."""
+    """Yield the pieces into which a set of bodies falls, as masks, from that of the lowest body."""
     while mask:
         piece = fresh = mask & -mask
         while fresh:
@@ -221,7 +200,7 @@ def _pieces(touching: Sequence[int], mask: int) -> Iterator[int]:
 
 
 def _cuts(blocking: Blocking, one: Members, other: Members) -> int:
-    """What it costs that units have bodies on both sides; an actuator is tested on the bench and stays whole."""
+    """Return what it costs that units have bodies on both sides; an actuator is tested on the bench as a whole."""
     names = [{blocking.bodies[k].unit for k in side} for side in (one, other)]
     return sum(_CUT_ACTUATOR if name in ACTUATOR_UNITS else 1 for name in names[0] & names[1])
 
@@ -229,33 +208,20 @@ def _cuts(blocking: Blocking, one: Members, other: Members) -> int:
 def _shared(
     blocking: Blocking, out: str, leaving: Members, staying: Members, undone: Members
 ) -> tuple[Members, Members, Members]:
-    """Both sides with the undone fasteners that belong to one of them alone, and those that join or part both.
-
-    A retaining ring parts what it holds from what is then in its way.
-    """
+    """Return both sides with the undone fasteners that belong to one alone, and those that join or part both."""
     sides, crossing = (set(leaving), set(staying)), set()
     for k in sorted(undone):
         joins = blocking.goes_through[k] - undone
-        touched = [bool(joins & side) for side in (leaving, staying)]
-        goes_along = touched[0]
-        hit = np.flatnonzero(blocking.blocked(out, k)).tolist() if goes_along else []
-        parts = bool(staying & set(hit)) or (not goes_along and any(blocking.blocked(out, m)[k] for m in leaving))
-        if all(touched) or parts:
+        leaves, stays = (bool(joins & side) for side in (leaving, staying))
+        if leaves:
+            parts = bool(staying & set(np.flatnonzero(blocking.blocked(out, k)).tolist()))
+        else:
+            parts = any(blocking.blocked(out, m)[k] for m in leaving)
+        if (leaves and stays) or parts:
             crossing.add(k)
         else:
-            sides[0 if touched[0] else 1].add(k)
+            sides[0 if leaves else 1].add(k)
     return frozenset(sides[0]), frozenset(sides[1]), frozenset(crossing)
-
-
-def _opposite(direction: str) -> str:
-    return ("-" if direction[0] == "+" else "+") + direction[1]
-
-
-MOST_ADDED = 4
-"""Additions in a step; more would not be told apart in its picture."""
-
-_BY_HAND = 3
-"""Bodies that need no step of their own to be put together, if they need no screws."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -264,9 +230,7 @@ class Addition:
 
     members: Members  #: indices of bodies
     out: str  #: the direction in which they would leave; they come the other way
-    #: Of the step that has put them together before; None for a single body, and for a few that are put together by
-    #: hand before they come
-    number: int | None = None
+    number: int | None = None  #: of the step that has put them together; None if they need none
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -286,7 +250,7 @@ class Step:
 
 
 def steps_of(assembly: Assembly) -> tuple[Step, ...]:
-    """The steps in order: each assembly is made in consecutive steps, what comes to it is made before."""
+    """Return the steps in order: each assembly is made in consecutive steps, what comes to it is made before."""
     found: list[Step] = []
     _make(assembly, found)
     return tuple(found)
@@ -309,20 +273,19 @@ def _make(assembly: Assembly, found: list[Step]) -> int | None:
     if continues and last is not None and not last.fasteners and len(last.additions) < MOST_ADDED:
         found[-1] = replace(last, additions=(*last.additions, *additions), fasteners=assembly.fasteners)
     else:
-        found.append(
-            Step(
-                number=len(found) + 1,
-                base=assembly.kept.members,
-                base_number=base_number,
-                additions=additions,
-                fasteners=assembly.fasteners,
-            )
+        new = Step(
+            number=len(found) + 1,
+            base=assembly.kept.members,
+            base_number=base_number,
+            additions=additions,
+            fasteners=assembly.fasteners,
         )
+        found.append(new)
     return found[-1].number
 
 
 def titled(step: Step, blocking: Blocking) -> str:
-    """What a step works at: the names of the units that it touches, the greatest first."""
+    """Return what a step works at: the names of the units that it touches, the greatest first."""
     names: dict[str, int] = {}
     for k in step.members:
         unit = blocking.bodies[k].unit

@@ -30,8 +30,8 @@ class Place:
     """A study and its database."""
 
     name: str  #: of the study in the campaign
-    db: Path  #: its database; missing before the study began
-    study: Study  #: its definition, under the name that the database has
+    db: Path  #: missing before the study began
+    study: Study  #: under the name that the database has
     member: Member  #: what it is in the campaign
 
 
@@ -39,13 +39,10 @@ class Place:
 class Stored:
     """How far a study is according to its database."""
 
-    #: Of the study; ``failed`` if the database cannot be read, or the study ended without a feasible design
-    state: State
-    #: evaluations, budget: number of trials, and how many there shall be
-    evaluations: int
-    budget: int
-    #: hypervolume, hypervolume_unit: of its front
-    hypervolume: float
+    state: State  #: ``failed`` if the database cannot be read, or the study ended without a feasible design
+    evaluations: int  #: number of trials
+    budget: int  #: how many trials there shall be
+    hypervolume: float  #: of its front
     hypervolume_unit: str
     front: int = 0  #: number of designs on it
     seconds: float = 0.0  #: running time so far
@@ -79,17 +76,16 @@ def held(folder: Path) -> Iterator[None]:
                 "stop it, or give another --folder"
             ) from None
         except OutputError as error:
-            raise OutputError(
-                f"campaign folder {str(folder)!r}: cannot be used ({error}); give another --folder"
-            ) from None
+            problem = f"campaign folder {str(folder)!r}: cannot be used ({error}); give another --folder"
+            raise OutputError(problem) from None
         yield
 
 
 def places_of(campaign: Campaign, folder: Path) -> list[Place]:
-    """The database of each study of a campaign.
+    """Return the database of each study of a campaign, which has the study's name.
 
-    It has the study's name. Where that does not exist, but another database in the folder that no name leads to has
-    the same settings, it is that one: the grid has got another axis since.
+    Where that does not exist, but another database in the folder that no name leads to has the same settings, it is
+    that one: the grid has got another axis since.
 
     Raises:
         StudyError: some databases of these names have other settings.
@@ -117,13 +113,13 @@ def places_of(campaign: Campaign, folder: Path) -> list[Place]:
 
 
 def strangers(folder: Path, places: Sequence[Place]) -> list[Path]:
-    """Databases in the folder that are of no study of the campaign."""
+    """Return databases in the folder that are of no study of the campaign."""
     used = {place.db for place in places}
     return [db for db in _databases(folder) if db not in used]
 
 
 def stored_state(place: Place) -> Stored:
-    """How far a study is."""
+    """Return how far a study is."""
     budget, unit = place.study.evaluations, place.study.objectives.volume_unit
     nothing = Stored(state="waiting", evaluations=0, budget=budget, hypervolume=0.0, hypervolume_unit=unit)
     try:
@@ -150,9 +146,8 @@ def stored_state(place: Place) -> Stored:
 
 
 def is_ended(place: Place, stored: Stored) -> bool:
-    """Whether running a study again would do nothing, because it has ended as its file says today.
-
-    A study whose motor or calibration is a file of the user's is run again, which looks whether the file has changed.
+    """Return whether running a study again would do nothing: it has ended as its file says, and no file of the user's
+    may have changed since, such as a motor or a calibration.
     """
     if stored.summary is None or stored.state not in ("finished", "failed"):
         return False
@@ -165,7 +160,6 @@ def _databases(folder: Path) -> list[Path]:
 
 
 def _others(folder: Path, own: Iterable[Path]) -> dict[str, Path]:
-    """Databases that no name of the campaign leads to, by the settings of their study."""
     known = set(own)
     found = {}
     for db in _databases(folder):
@@ -182,7 +176,7 @@ def _is_new(db: Path) -> bool:
 
 
 def _meta(db: Path) -> tuple[Study, StudyMeta] | None:
-    """Settings of a stored study; None where there is none, or none that can be read: running it then says why."""
+    """Return a stored study's settings; None where none can be read: running it then says why."""
     try:
         if is_vacant(db):
             return None
@@ -194,7 +188,7 @@ def _meta(db: Path) -> tuple[Study, StudyMeta] | None:
 
 
 def _settings(study: Study) -> dict[str, Any]:
-    """What decides a study's trials, with the names of motors and calibration, without its own name."""
+    """Return what decides a study's trials, with the names of motors and calibration, without its own name."""
     # Of files the last part of their path: a folder with campaign, motors and databases can be moved.
     names = [[Path(name).name for name in kit] for kit in study.kits]
     settings = decisive(study, {}, {})["study"] | {"motors": names, "calibration": Path(study.calibration).name}

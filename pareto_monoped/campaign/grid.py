@@ -1,7 +1,4 @@
-"""A campaign file: a base study, and axes whose values are combined; one study per combination.
-
-Names for the values of a campaign's axes: what a study, its database and its line in a table are called.
-"""
+"""A campaign file: a base study, and axes whose values are combined; one study per combination, with its name."""
 
 import hashlib
 import json
@@ -24,29 +21,35 @@ from pareto_monoped.errors import StudyError, complaint
 LONGEST_PART, LONGEST = 48, 180
 """Letters of one axis in a name, and of a name. Our own choice: file systems take 255, and ``.db-journal`` follows."""
 _UNUSUAL = re.compile(r"[^A-Za-z0-9._+-]+")
-_BEFORE = {
-    "seeds": "seed",
-    "cases": "case-",
-    "evaluations": "jumps",
-    "hip_motors": "hip-",
-    "knee_motors": "knee-",
-}
+_BEFORE = {"seeds": "seed", "cases": "case-", "evaluations": "jumps", "hip_motors": "hip-", "knee_motors": "knee-"}
 """Axis -> what stands before a value that says too little alone."""
+MOST_STUDIES = 1000
+"""Our own choice: a thousand studies of 8,000 jumps take a day on 16 cores; more is a typing error."""
+KEYS = {
+    "motors": "motor",
+    "hip_motors": "hip_motor",
+    "knee_motors": "knee_motor",
+    "calibrations": "calibration",
+    "cases": "case",
+    "algorithms": "algorithm",
+    "seeds": "seed",
+}
+"""Axis -> key of a study file, where it is not the same word."""
+_TABLES = ("variables", "constraints")
+"""Axes whose values are added to the base study's table; those of the others take the place of its value."""
+
+Values = Annotated[list[Any], Field(min_length=1)]
 
 
 def canonical(value: Any) -> str:
-    """A text that is equal for equal values; capitals do not tell names apart, as for motors."""
+    """Return a text that is equal for equal values; capitals do not tell names apart, as for motors."""
     return json.dumps(value, sort_keys=True, default=str).casefold()
 
 
 def names_of(axis: str, values: Sequence[Any]) -> list[str]:
-    """A readable name for each value of an axis; no two are alike, also where capitals count for nothing.
-
-    Args:
-        axis: key of the campaign file.
-        values: different values, as ``canonical`` tells them apart; any may be of a wrong type.
-    """
-    texts = [slug(_BEFORE.get(axis, "") + text) for text in _texts(axis, values)]
+    """Return a readable name per value of an axis, whatever its type; no two are alike, also without capitals."""
+    made = {"objectives": _objectives, "algorithms": _algorithms}.get(axis)
+    texts = [slug(_BEFORE.get(axis, "") + text) for text in (made(values) if made else map(_plain, values))]
     counts = Counter(text.casefold() for text in texts)
     return [
         text if counts[text.casefold()] == 1 else f"{text}-{_digest(value)}"
@@ -54,16 +57,8 @@ def names_of(axis: str, values: Sequence[Any]) -> list[str]:
     ]
 
 
-def _texts(axis: str, values: Sequence[Any]) -> list[str]:
-    if axis == "objectives":
-        return _objectives(values)
-    if axis == "algorithms":
-        return _algorithms(values)
-    return [_plain(value) for value in values]
-
-
 def _plain(value: Any) -> str:
-    """A value in letters: a file by its stem, a list or a table by what it has."""
+    """Return a value in letters: a file by its stem, a list or a table by what it has."""
     if isinstance(value, str):
         return Path(value).stem if value.endswith(".toml") else value
     if isinstance(value, Mapping):
@@ -76,7 +71,7 @@ def _plain(value: Any) -> str:
 
 
 def _objectives(values: Sequence[Any]) -> list[str]:
-    """Objectives by what not all values have in common."""
+    """Return objectives by what not all values have in common."""
     lists = [[str(name) for name in value] if isinstance(value, list | tuple) else [str(value)] for value in values]
     common = set.intersection(*map(set, lists)) if lists else set()
     shorter = ["-".join(name for name in names if name not in common) for names in lists]
@@ -84,7 +79,7 @@ def _objectives(values: Sequence[Any]) -> list[str]:
 
 
 def _algorithms(values: Sequence[Any]) -> list[str]:
-    """Algorithms by name, and by their settings where several have one name."""
+    """Return algorithms by name, and by their settings where several have one name."""
     tables = [value if isinstance(value, Mapping) else {"name": value} for value in values]
     names = [str(table.get("name")) for table in tables]
     return [
@@ -94,25 +89,19 @@ def _algorithms(values: Sequence[Any]) -> list[str]:
 
 
 def joined(parts: Sequence[str]) -> str:
-    """The name of a study from those of its values."""
+    """Return the name of a study from those of its values."""
     name = "_".join(parts)
     return name if len(name) <= LONGEST else f"{name[: LONGEST - 7]}-{_digest(name)}"
 
 
 def slug(text: str) -> str:
-    """Any text as part of a file's name."""
+    """Return any text as part of a file's name."""
     short = _UNUSUAL.sub("-", text).strip("-.") or "study"
     return short if len(short) <= LONGEST_PART else f"{short[: LONGEST_PART - 7]}-{_digest(text)}"
 
 
 def _digest(value: Any) -> str:
     return hashlib.sha256(canonical(value).encode()).hexdigest()[:6]
-
-
-MOST_STUDIES = 1000
-"""Our own choice: a thousand studies of 8,000 jumps take a day on 16 cores; more is a typing error."""
-
-Values = Annotated[list[Any], Field(min_length=1)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -147,26 +136,12 @@ class _Axes:
     seeds: Values | None = None
 
 
-KEYS = {
-    "motors": "motor",
-    "hip_motors": "hip_motor",
-    "knee_motors": "knee_motor",
-    "calibrations": "calibration",
-    "cases": "case",
-    "algorithms": "algorithm",
-    "seeds": "seed",
-}
-"""Axis -> key of a study file, where it is not the same word."""
-_TABLES = ("variables", "constraints")
-"""Axes whose values are added to the base study's table; those of the others take the place of its value."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Member:
     """One study of a campaign."""
 
     name: str  #: of the study and of its database, without suffix
-    study: Study  #: its definition
+    study: Study
     labels: Mapping[str, str]  #: axis that varies -> name of the study's value
 
 
@@ -174,10 +149,9 @@ class Member:
 class Campaign:
     """A grid of studies."""
 
-    #: name, description: as the file gives them
     name: str
     description: str
-    path: Path  #: the file
+    path: Path  #: of the file
     axes: tuple[str, ...]  #: names of the axes that vary, in the order of the file
     members: tuple[Member, ...]  #: the studies, the last axis varying fastest
 
@@ -188,7 +162,7 @@ class Campaign:
 
 
 def load_campaign(path: Path) -> Campaign:
-    """The campaign in a TOML file; every study of it is checked.
+    """Return the campaign in a TOML file; every study of it is checked.
 
     Raises:
         StudyError: no readable TOML, an unknown key, a wrong type, a value named twice, too many studies, or a
@@ -223,14 +197,14 @@ def load_campaign(path: Path) -> Campaign:
 
 
 def _refuse_equal_names(names: Sequence[str], source: str) -> None:
-    """Names of values may give the same name together, such as ``a_b`` with ``c`` and ``a`` with ``b_c``."""
+    """Refuse names that are equal together, such as ``a_b`` with ``c`` and ``a`` with ``b_c``."""
     name, count = Counter(name.casefold() for name in names).most_common(1)[0]
     if count > 1:
         raise StudyError(f"{source}: {count} studies would be named {name!r}; rename one of the files of their values")
 
 
 def _base(given: Any, path: Path, source: str) -> dict[str, Any]:
-    """The keys of the base study: of a file, or of a table in the campaign file."""
+    """Return the keys of the base study: of a file, or of a table in the campaign file."""
     if isinstance(given, Mapping):
         return with_paths(given, path.parent)
     if isinstance(given, str) and given.endswith(".toml"):
@@ -241,7 +215,7 @@ def _base(given: Any, path: Path, source: str) -> dict[str, Any]:
 
 
 def _axes(given: Mapping[str, Any], path: Path, source: str) -> dict[str, list[Any]]:
-    """Axis -> values, in the order of the file, with full paths."""
+    """Return axis -> values, in the order of the file, with full paths."""
     table = checked(_Axes, given, source=f"{source}, table [axes]", error=StudyError)
     known = {field.name: getattr(table, field.name) for field in fields(table)}
     axes = {axis: known[axis] for axis in given if known[axis] is not None}
@@ -259,7 +233,7 @@ def _axes(given: Mapping[str, Any], path: Path, source: str) -> dict[str, list[A
 
 
 def _combined(base: Mapping[str, Any], chosen: Mapping[str, Any]) -> dict[str, Any]:
-    """The keys of a study: those of the base with a value of each axis."""
+    """Return the keys of a study: those of the base with a value of each axis."""
     values = dict(base)
     for axis, value in chosen.items():
         key = KEYS.get(axis, axis)

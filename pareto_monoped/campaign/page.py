@@ -1,6 +1,6 @@
 """The report of a campaign: one self-contained page in the looks of the report of a study.
 
-The tables of a campaign's page; every text from a file or a database is escaped here.
+Every text from a file or a database is escaped here.
 """
 
 import json
@@ -47,10 +47,14 @@ _SINGULAR = {
 }
 """Axis -> what a value of it is called; others by their own name."""
 _STRIP_PX, _EDGE_PX = 130.0, 6.0
+SCRIPTS = ("dom", "scales", "marks", "plots", "chart")
+"""Scripts of the report of a study that this page has, too; its own one follows."""
+MOST_CURVES = 8
+"""Groups that the charts show at first. Our own choice: more bands, one over the other, cannot be told apart."""
 
 
 def section_tables(section: Section) -> str:
-    """Medians by group, by each axis where there are several, and by seed."""
+    """Return medians by group, by each axis where there are several, and by seed."""
     others = [axis for axis in section.axes if axis != SEEDS]
     words = " and ".join(_SINGULAR.get(axis, axis) for axis in others) or "studies"
     parts = [_table(section, section.groups, f"By {words}" if others else "All studies", spread=True)]
@@ -62,7 +66,7 @@ def section_tables(section: Section) -> str:
 
 
 def studies_table(campaign: Campaign, results: Sequence[Result]) -> str:
-    """All studies and how far they are."""
+    """Return all studies and how far they are."""
     head = ["study", "state", "jumps", "feasible", "front", "hypervolume", "time, s"]
     rows = []
     for result in results:
@@ -75,7 +79,7 @@ def studies_table(campaign: Campaign, results: Sequence[Result]) -> str:
 
 
 def failures(results: Sequence[Result]) -> str:
-    """A note for the studies that failed and one for those that are not finished; they are in no median."""
+    """Return a note per failed study and one for those that are not finished; they are in no median."""
     notes = [f"{one.place.name} failed: {one.stored.reason}" for one in results if one.stored.state == "failed"]
     open_ones = [one.place.name for one in results if one.stored.state in ("waiting", "running", "unfinished")]
     if open_ones:
@@ -86,7 +90,7 @@ def failures(results: Sequence[Result]) -> str:
 
 
 def _table(section: Section, groups: Sequence[Group], title: str, *, spread: bool = False) -> str:
-    """One row per group: medians, and bands where a group has several studies."""
+    """Return one row per group: medians, and bands where a group has several studies."""
     first, second = (measure(name) for name in pair_of(section.objectives))
     levels = levels_of(section.objectives)
     volumes = [result.stored.hypervolume for result in section.results]
@@ -108,7 +112,7 @@ def _table(section: Section, groups: Sequence[Group], title: str, *, spread: boo
 
 
 def _seeds(section: Section) -> str:
-    """How seeds compare: each study's hypervolume against the median of those that differ in the seed only."""
+    """Return how seeds compare: each study's hypervolume against the median of those that differ in the seed only."""
     shares = relative(section)
     rows = []
     for group in section.by(SEEDS):
@@ -146,7 +150,7 @@ def _cell(values: Sequence[float], decimals: int) -> str:
 
 
 def _told(found: Spread, decimals: int, count: int) -> str:
-    """A median, and under it the band if there are several values."""
+    """Return a median, and under it the band if there are several values."""
 
     def text(value: float) -> str:
         return f"{value:.{decimals}f}" if math.isfinite(value) else "not reached"
@@ -157,7 +161,7 @@ def _told(found: Spread, decimals: int, count: int) -> str:
 
 
 def _strip(values: Sequence[float], ends: tuple[float, float]) -> str:
-    """One dot per study on a scale from the least to the greatest hypervolume of the section."""
+    """Return one dot per study on a scale from the least to the greatest hypervolume of the section."""
     low, high = ends
 
     def x(value: float) -> float:
@@ -173,7 +177,7 @@ def _strip(values: Sequence[float], ends: tuple[float, float]) -> str:
 
 
 def _html(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A table that scrolls sideways on a narrow page; its cells are HTML already."""
+    """Return a table that scrolls sideways on a narrow page; its cells are HTML already."""
     top = "".join(f'<th scope="col"{"" if k == 0 else " class=n"}>{safe(name)}</th>' for k, name in enumerate(head))
     body = "".join(
         f'<tr><th scope="row">{row[0]}</th>' + "".join(f'<td class="n">{cell}</td>' for cell in row[1:]) + "</tr>"
@@ -185,19 +189,8 @@ def _html(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     )
 
 
-SCRIPTS = ("dom", "scales", "marks", "plots", "chart")
-"""Scripts of the report of a study that this page has, too; its own one follows."""
-MOST_CURVES = 8
-"""Groups that the charts show at first. Our own choice: more bands, one over the other, cannot be told apart."""
-
-
 def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
-    """The whole HTML text.
-
-    Args:
-        campaign: the grid.
-        results: of all its studies, see ``results_of``.
-    """
+    """Return the whole HTML text."""
     sections = sections_of(results, campaign.axes)
     own = "\n".join([*(asset(f"{name}.js") for name in SCRIPTS), _own("campaign.js")])
     script = f"(() => {{\n'use strict';\n{own}\n}})();\n"
@@ -205,7 +198,6 @@ def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
         f"default-src 'none'; script-src {fingerprint(script)}; style-src 'unsafe-inline'; "
         "img-src data: blob:; base-uri 'none'; form-action 'none'"
     )
-    parts = [_section(section, k, len(sections)) for k, section in enumerate(sections)]
     return Template(_own("campaign.html")).substitute(
         policy=policy,
         title=safe(campaign.name),
@@ -214,7 +206,7 @@ def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
         summary=safe(_summary(results, sections)),
         notes=failures(results),
         links="".join(f'<a href="#section-{k}">{safe(_title(one))}</a>' for k, one in enumerate(sections)),
-        sections="\n".join(parts),
+        sections="\n".join(_section(section, k, len(sections)) for k, section in enumerate(sections)),
         studies=studies_table(campaign, results),
         version=safe(__version__),
         payload=embedded_json(_payload(sections)),
@@ -230,15 +222,16 @@ def _summary(results: Sequence[Result], sections: Sequence[Section]) -> str:
     finished = sum(result.finished for result in results)
     jumps = sum(result.stored.evaluations for result in results)
     seconds = sum(result.stored.seconds for result in results)
-    minutes, hours = seconds / 60.0, seconds / 3600.0
-    time = (
-        f"{seconds:.0f} seconds" if minutes < 2.0 else f"{minutes:.0f} minutes" if hours < 2.0 else f"{hours:.1f} hours"
-    )
+    if seconds < 120.0:
+        time = f"{seconds:.0f} seconds"
+    else:
+        time = f"{seconds / 60.0:.0f} minutes" if seconds < 7200.0 else f"{seconds / 3600.0:.1f} hours"
     words = f"{finished} of {len(results)} studies are finished: {jumps:,} jumps in {time} of running time."
+    several = (
+        " Studies with other objectives or another calibration cannot be compared; they have sections of their own."
+    )
     if len(sections) > 1:
-        words += (
-            " Studies with other objectives or another calibration cannot be compared; they have sections of their own."
-        )
+        words += several
     return words
 
 
@@ -250,6 +243,7 @@ def _title(section: Section) -> str:
 
 def _section(section: Section, k: int, count: int) -> str:
     first, second = (label_of(name) for name in pair_of(section.objectives))
+    extreme = "Most" if section.objectives.directions[pair_of(section.objectives)[1]] == "maximise" else "Least"
     seeds = max(len(group.results) for group in section.groups)
     bands = (
         "Lines are medians over the studies of a group, bands go from what the best tenth of them reaches to what nine "
@@ -265,15 +259,11 @@ def _section(section: Section, k: int, count: int) -> str:
 <h2 id="title-{k}">{safe(_title(section))}</h2>
 <p class="small">{bands}</p>
 <div id="switches-{k}" class="switches" role="group" aria-label="Groups shown in the charts"></div>
-<div class="pair"><figure><h3>{safe(_extreme(section))} {safe(second)} over {safe(first)}</h3>
+<div class="pair"><figure><h3>{extreme} {safe(second)} over {safe(first)}</h3>
 <div id="attainment-{k}" class="chart tall"></div></figure>
 <figure><h3>Hypervolume over jumps</h3><div id="growth-{k}" class="chart tall"></div></figure></div>
 {section_tables(section)}
 </section>"""
-
-
-def _extreme(section: Section) -> str:
-    return "Most" if section.objectives.directions[pair_of(section.objectives)[1]] == "maximise" else "Least"
 
 
 def _payload(sections: Sequence[Section]) -> dict[str, Any]:
@@ -301,10 +291,9 @@ def _curves(section: Section) -> dict[str, Any]:
 
 
 def _first(groups: Sequence[Group]) -> list[int]:
-    """Positions of the groups that the charts show at first: those of most hypervolume, in their order."""
+    """Return positions of the groups that the charts show at first: those of most hypervolume, in their order."""
     volumes = [spread_of([result.stored.hypervolume for result in group.results]).middle for group in groups]
-    best = sorted(range(len(groups)), key=lambda k: -volumes[k])[:MOST_CURVES]
-    return sorted(best)
+    return sorted(sorted(range(len(groups)), key=lambda k: -volumes[k])[:MOST_CURVES])
 
 
 def _group(group: Group, levels: NDArray[np.float64]) -> dict[str, Any]:
@@ -320,5 +309,5 @@ def _group(group: Group, levels: NDArray[np.float64]) -> dict[str, Any]:
 
 
 def _numbers(values: NDArray[np.float64]) -> list[float | None]:
-    """For JSON, with five digits; None for NaN."""
+    """Return values for JSON, with five digits; None for NaN."""
     return [json.loads(f"{value:.5g}") if math.isfinite(value) else None for value in values.tolist()]

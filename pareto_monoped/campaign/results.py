@@ -1,9 +1,4 @@
-"""What the studies of a campaign found: the part of each database that tables and charts compare.
-
-Medians and bands over studies: by motor, by seed, by whatever varies, where studies can be compared at all.
-
-A campaign as a table for other programs: one row per study.
-"""
+"""What the studies of a campaign found, with medians and bands over those that can be compared, and as CSV."""
 
 import csv
 import io
@@ -23,15 +18,17 @@ from pareto_monoped.storage.reader import read_study
 
 Floats = NDArray[np.float64]
 
-LEVELS_M = (0.7, 0.8, 0.9)
-"""Heights at which tables say what they cost: those of the report of a study."""
+LEVELS_M = (0.7, 0.8, 0.9)  #: Heights at which tables say what they cost: those of the report of a study.
+LOW, HIGH = 0.1, 0.9  #: Ends of the bands: what a tenth of the studies and nine tenths of them reach.
+POINTS = 120  #: Of a curve: more than a chart can show apart.
+SEEDS = "seeds"  #: The axis that says nothing of the robot; its studies are repetitions.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
     """A study of a campaign and what it found."""
 
-    place: Place  #: the study
+    place: Place
     stored: Stored  #: how far it is
     calibration: str  #: name and version; the name alone before the study began
     front: Floats  #: values of the objectives of the designs on the front, shape (n, m)
@@ -65,10 +62,7 @@ class Result:
         return float(values.max() if maximised else values.min())
 
     def least(self, levels: Floats) -> Floats:
-        """The best second objective of ``pair_of`` among designs that reach each level of the first, shape (k,).
-
-        NaN where none does.
-        """
+        """Return the best second objective of ``pair_of`` per level reached in the first, shape (k,); else NaN."""
         names = pair_of(self.objectives)
         columns = [self.objectives.names.index(name) for name in names]
         signs = self.objectives.signs[columns]
@@ -79,28 +73,26 @@ class Result:
 
 
 def pair_of(objectives: Objectives) -> tuple[str, str]:
-    """The two objectives that a curve shows: the height, where it is one, else the first, and the first other one."""
+    """Return the two objectives that a curve shows: the height, else the first, and the first other one."""
     heights = [name for name in objectives.names if is_height(name)]
     first = (heights or list(objectives.names))[0]
     return first, objectives.other_than(first).name
 
 
 def is_height(name: str) -> bool:
-    """Whether an objective is the height, or what built robots keep of it."""
+    """Return whether an objective is the height, or what built robots keep of it."""
     return name.partition(".")[0] == "height_m"
 
 
 def levels_of(objectives: Objectives) -> tuple[float, ...]:
-    """Levels at which tables give the second objective of ``pair_of``; none where the first is no height."""
+    """Return levels at which tables give the second objective of ``pair_of``; none where the first is no height."""
     return LEVELS_M if is_height(pair_of(objectives)[0]) else ()
 
 
 def results_of(places: Sequence[Place], failed: Mapping[str, str] | None = None) -> list[Result]:
-    """What each study found; those that have not begun or cannot be read found nothing.
+    """Return what each study found; those that have not begun or cannot be read found nothing.
 
-    Args:
-        places: of the studies.
-        failed: name -> reason of studies that could not be run just now, which their databases do not say.
+    ``failed`` has the reason, by name, of studies that could not be run just now, which their databases do not say.
 
     Raises:
         DatabaseError: a database does not match its running hash.
@@ -113,16 +105,9 @@ def _result(place: Place, reason: str | None) -> Result:
     if reason is not None:
         stored = replace(stored, state="failed", reason=reason)
     if stored.summary is None:
-        nothing = np.zeros((0, len(place.study.objectives.names)))
-        empty = np.zeros((0, 2))
-        return Result(
-            place=place,
-            stored=stored,
-            calibration=place.study.calibration,
-            front=nothing,
-            history=empty,
-            feasible=float("nan"),
-        )
+        nothing, name = np.zeros((0, len(place.study.objectives.names))), place.study.calibration
+        history = np.zeros((0, 2))
+        return Result(place=place, stored=stored, calibration=name, front=nothing, history=history, feasible=math.nan)
     # Read whole, because only then everything is checked against the running hash.
     data = read_study(place.db)
     states = data.trials["state"]
@@ -134,14 +119,6 @@ def _result(place: Place, reason: str | None) -> Result:
         history=data.history[["evaluations", "hypervolume"]].to_numpy(dtype=np.float64),
         feasible=float((states == "feasible").mean()) if len(states) else float("nan"),
     )
-
-
-LOW, HIGH = 0.1, 0.9
-"""Ends of the bands: what a tenth of the studies and nine tenths of them reach."""
-POINTS = 120
-"""Of a curve: more than a chart can show apart."""
-SEEDS = "seeds"
-"""The axis that says nothing of the robot; its studies are repetitions."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -156,15 +133,14 @@ class Group:
 class Section:
     """Finished studies that can be compared: the same objectives under the same calibration."""
 
-    #: objectives, calibration: of all of them
     objectives: Objectives
     calibration: str
     axes: tuple[str, ...]  #: that vary among them
-    results: tuple[Result, ...]  #: the studies
+    results: tuple[Result, ...]
     groups: tuple[Group, ...]  #: those that differ in nothing but the seed
 
     def by(self, axis: str) -> tuple[Group, ...]:
-        """The studies by their value on one axis, whatever they have on the others."""
+        """Return the studies by their value on one axis, whatever they have on the others."""
         return _grouped(self.results, (axis,))
 
 
@@ -178,7 +154,7 @@ class Spread:
 
 
 def sections_of(results: Sequence[Result], axes: Sequence[str]) -> list[Section]:
-    """The finished studies by what can be compared, in the order of the campaign."""
+    """Return the finished studies by what can be compared, in the order of the campaign."""
     found: dict[tuple[tuple[str, ...], str], list[Result]] = {}
     for result in results:
         if result.finished:
@@ -186,15 +162,14 @@ def sections_of(results: Sequence[Result], axes: Sequence[str]) -> list[Section]
     sections = []
     for (names, calibration), members in found.items():
         varying = tuple(axis for axis in axes if _values(members, axis) > 1)
-        sections.append(
-            Section(
-                objectives=Objectives(names=names),
-                calibration=calibration,
-                axes=varying,
-                results=tuple(members),
-                groups=_grouped(members, [axis for axis in varying if axis != SEEDS]),
-            )
+        section = Section(
+            objectives=Objectives(names=names),
+            calibration=calibration,
+            axes=varying,
+            results=tuple(members),
+            groups=_grouped(members, [axis for axis in varying if axis != SEEDS]),
         )
+        sections.append(section)
     return sections
 
 
@@ -211,44 +186,41 @@ def _grouped(results: Sequence[Result], axes: Sequence[str]) -> tuple[Group, ...
 
 
 def spread_of(values: Sequence[float] | Floats) -> Spread:
-    """Median and band of some values: order statistics, no values between them.
+    """Return median and band as order statistics, of which no value lies between two; NaN is the greatest.
 
-    Of an even number the median is the lower one of the middle two. Of fewer than ten values the band goes from the
-    least to the greatest. NaN counts as greater than every number.
+    Of an even number the median is the lower of the middle two, of fewer than ten values the band has all.
     """
     middle, low, high = quantiles(np.asarray(values, dtype=np.float64)[:, None])[:, 0]
     return Spread(middle=float(middle), low=float(low), high=float(high))
 
 
 def quantiles(values: Floats) -> Floats:
-    """Median, low and high end of the bands of n runs at k places, shape (3, k) from shape (n, k)."""
+    """Return median, low and high end of the bands of n runs at k places, shape (3, k) from shape (n, k)."""
     ranked = np.sort(values, axis=0)  # NaN last
-    count = len(ranked)
-    ranks = [max(int(np.ceil(share * count - 1e-9)) - 1, 0) for share in (0.5, LOW, HIGH)]
+    ranks = [max(int(np.ceil(share * len(ranked) - 1e-9)) - 1, 0) for share in (0.5, LOW, HIGH)]
     return np.asarray(ranked[ranks])
 
 
 def levels_of_section(section: Section) -> Floats:
-    """Levels of the first objective of ``pair_of`` from the least to the most on any front, shape (k,)."""
+    """Return levels of the first objective of ``pair_of`` from the least to the most on any front, shape (k,)."""
     first = section.objectives.names.index(pair_of(section.objectives)[0])
     values = np.concatenate([result.front[:, first] for result in section.results])
     return np.linspace(values.min(), values.max(), POINTS)
 
 
 def attainment(group: Group, levels: Floats) -> Floats:
-    """What half, a tenth and nine tenths of the runs need at most for each level, shape (3, k).
+    """Return what half, a tenth and nine tenths of the runs need at most for each level, shape (3, k).
 
     These are empirical attainment surfaces (Grunert da Fonseca et al. 2001): order statistics of the runs' best second
     objectives at each level of the first, such as their least energies at each height.
     """
-    sign = group.results[0].objectives.signs[
-        group.results[0].objectives.names.index(pair_of(group.results[0].objectives)[1])
-    ]
+    objectives = group.results[0].objectives
+    sign = objectives.signs[objectives.names.index(pair_of(objectives)[1])]
     return np.asarray(sign * quantiles(np.stack([sign * result.least(levels) for result in group.results])))
 
 
 def growth(group: Group) -> tuple[Floats, Floats]:
-    """Evaluations, shape (k,), and median and band of the hypervolume there, shape (3, k); the last value is held."""
+    """Return evaluations, shape (k,), and median and band of the hypervolume there, shape (3, k); the last is held."""
     histories = [result.history for result in group.results if len(result.history)]
     if not histories:
         return np.zeros(0), np.zeros((3, 0))
@@ -259,12 +231,12 @@ def growth(group: Group) -> tuple[Floats, Floats]:
 
 
 def _held(history: Floats, at: Floats) -> Floats:
-    """The latest value at each number of evaluations, none of them before the first."""
+    """Return the latest value at each number of evaluations, none of them before the first."""
     return np.asarray(history[np.searchsorted(history[:, 0], at, side="right") - 1, 1])
 
 
 def relative(section: Section) -> dict[str, float]:
-    """Name of each study -> its hypervolume as a share of the median of the studies that differ in the seed only."""
+    """Return each study's hypervolume as a share of the median of the studies that differ in the seed only."""
     shares = {}
     for group in section.groups:
         middle = spread_of([result.stored.hypervolume for result in group.results]).middle
@@ -274,7 +246,7 @@ def relative(section: Section) -> dict[str, float]:
 
 
 def csv_text(campaign: Campaign, results: Sequence[Result]) -> str:
-    """The table as CSV; what a study does not have is empty.
+    """Return the table as CSV; what a study does not have is empty.
 
     Columns: name and database of the study, its value on each axis that varies, settings, how far it is, and what it
     found: ``knee_NAME`` are the objectives of the knee, ``best_NAME`` is the best value of the first objective,
@@ -293,7 +265,8 @@ def _row(campaign: Campaign, result: Result) -> dict[str, Any]:
     study, stored = result.place.study, result.stored
     counts = {} if stored.summary is None else stored.summary.counts
     first, second = pair_of(study.objectives)
-    at_levels = result.least(np.array(levels_of(study.objectives)))
+    at_levels = result.least(np.array(levels_of(study.objectives))).tolist()
+    knee_values = zip(study.objectives.names, result.knee.tolist(), strict=True)
     return {
         "study": result.place.name,
         "database": str(result.place.db),
@@ -312,13 +285,10 @@ def _row(campaign: Campaign, result: Result) -> dict[str, Any]:
         "hypervolume": _number(stored.hypervolume if stored.evaluations else math.nan),
         "hypervolume_unit": stored.hypervolume_unit,
         f"best_{first}": _number(result.most),
-        **{
-            f"knee_{name}": _number(value)
-            for name, value in zip(study.objectives.names, result.knee.tolist(), strict=True)
-        },
+        **{f"knee_{name}": _number(value) for name, value in knee_values},
         **{
             f"{second}_at_{str(level).replace('.', '_')}_m": _number(value)
-            for level, value in zip(LEVELS_M, at_levels.tolist(), strict=False)
+            for level, value in zip(LEVELS_M, at_levels, strict=False)
         },
         "reason": stored.reason,
     }

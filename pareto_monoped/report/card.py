@@ -21,12 +21,13 @@ from pareto_monoped.pareto.pick import pick
 from pareto_monoped.pareto.selectors import Knee, MinHeight, Selector
 from pareto_monoped.report.comparison import group_of
 from pareto_monoped.report.motors import gearbox_numbers
+from pareto_monoped.report.packing import column
 from pareto_monoped.report.packing import packed as packed_jumps
-from pareto_monoped.report.resimulation import MOST_FRAMES, Resimulation, jumps_of
+from pareto_monoped.report.resimulation import MOST_FRAMES, Resimulation, jumps_of, of_trials
 from pareto_monoped.report.robust import alternatives_of, influences_of, robust_of
 from pareto_monoped.report.schema import Model3D, Picked, StudyCard
 from pareto_monoped.report.summary import command, notes, provenance, sentences
-from pareto_monoped.report.trials import LETTERS, audit_records, front_columns, history_columns, thinned, trial_columns
+from pareto_monoped.report.trials import LETTERS, audit_records, history_columns, thinned, trial_columns
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.search.weighted import weighted_cost
 from pareto_monoped.storage.extra_rows import Stored, StoredSensitivity
@@ -68,23 +69,9 @@ class Source:
 
 
 def study_card(
-    source: Source,
-    label: str,
-    most_rows: int,
-    places: Places,
-    variables: Sequence[Variable],
-    goals: Sequence[str] = (),
+    source: Source, label: str, most_rows: int, places: Places, variables: Sequence[Variable], goals: Sequence[str] = ()
 ) -> StudyCard:
-    """What the page says of one study.
-
-    Args:
-        source: the study.
-        label: its name on the page.
-        most_rows: trials that the page may hold of it.
-        places: of its motors.
-        variables: those that the page shows.
-        goals: the objectives of all studies on the page.
-    """
+    """Return what the page says of a study with at most ``most_rows`` trials; ``goals`` are all studies' objectives."""
     data, study, again = source.data, source.data.study, source.resimulation
     front = data.front()
     weights = best_of_weights(data)
@@ -98,7 +85,11 @@ def study_card(
     foot_kg, foot_radius_m = _foot(data)
     cases = pd.DataFrame([case.design.as_array() for case in PAPER_CASES.values()], columns=list(NAMES))
     several = len(study.kits) > 1
-    picks = _picks(data, front, row_of)
+    picks, masses_kg = _picks(data, front, row_of), _body_masses_kg(data, front)
+    failed = data.trials.loc[state == "failed", "status"].value_counts()
+    chosen: dict[str, Sequence[int]] = dict(_gearboxes(trials, data.kit_rows(trials), places.maps))
+    if several:
+        chosen["motor"] = [places.kits[name] for name in trials["motor"]]
     return StudyCard(
         label=label,
         name=study.name,
@@ -118,7 +109,7 @@ def study_card(
         budget=data.meta.budget,
         seconds=data.wall_time_s,
         counts={name: int((state == name).sum()) for name in LETTERS} | {"total": len(data.trials)},
-        reasons=_failures(data.trials),
+        reasons={str(status): int(count) for status, count in failed.items()},
         hypervolume=float(data.history["hypervolume"].iloc[-1]) if len(data.history) else 0.0,
         hypervolume_unit=study.objectives.volume_unit,
         reference=data.reference_point.text(),
@@ -129,18 +120,11 @@ def study_card(
         at_bounds=list(bound_lines(data, front).values()),
         summary=sentences(data, front, again.cases),
         notes=notes(data, again),
-        trials=trial_columns(
-            trials,
-            _gearboxes(trials, data.kit_rows(trials), places.maps)
-            | ({"motor": [places.kits[name] for name in trials["motor"]]} if several else {}),
-            len(data.trials),
-            variables,
-            goals,
-        ),
+        trials=trial_columns(trials, chosen, len(data.trials), variables, goals),
         front=[row_of[int(trial)] for trial in front["trial"]],
         ill_conditioned=[row_of[trial] for trial in sorted(data.ill_conditioned.tolist())],
         picks=picks,
-        more=front_columns(_body_masses_kg(data, front)),
+        more={f"{body}_kg": column(masses_kg[:, i]) for i, body in enumerate(("base", "thigh", "shank"))},
         audits=audit_records(data.audits),
         jumps=packed_jumps(_with_alternatives(data, again, picks, trials), again.frames),
         case_jumps=packed_jumps(again.case_jumps, MOST_FRAMES),
@@ -166,7 +150,7 @@ def _gearboxes(
     maps: Mapping[str, MapPlace],
     suffix: str = "_gearbox",
 ) -> dict[str, list[int]]:
-    """Numbers of the designs' gearboxes on the page, by joint; ``kit_rows`` has the positions of each kit's designs."""
+    """Return the numbers of designs' gearboxes by joint; ``kit_rows`` has the positions of each kit's designs."""
     found = {joint: np.full(len(designs), -1) for joint in ("hip", "knee")}
     for kit, rows in kit_rows:
         for joint, numbers in found.items():
@@ -178,7 +162,7 @@ def _gearboxes(
 
 
 def _body_masses_kg(data: StudyData, designs: pd.DataFrame) -> NDArray[np.float64]:
-    """Masses of base, thigh and shank of n simulated designs, shape (n, 3)."""
+    """Return the masses of base, thigh and shank of n simulated designs, shape (n, 3)."""
     masses = np.zeros((len(designs), 3))
     for kit, rows in data.kit_rows(designs):
         values = designs.iloc[rows][list(NAMES)].to_numpy(dtype=np.float64)
@@ -189,7 +173,7 @@ def _body_masses_kg(data: StudyData, designs: pd.DataFrame) -> NDArray[np.float6
 def _with_alternatives(
     data: StudyData, again: Resimulation, picks: Sequence[Picked], trials: pd.DataFrame
 ) -> "dict[int, Recording]":
-    """The jumps of the front, if it has any, and of the alternatives, most of which are just behind it."""
+    """Return the jumps of the front, if it has any, and of the alternatives, most of which are just behind it."""
     jumps = dict(again.jumps)
     if not jumps:
         return jumps
@@ -198,42 +182,31 @@ def _with_alternatives(
     for kit, places in data.kit_rows(rows):
         members = rows.iloc[places]
         made = jumps_of(members[list(NAMES)].to_numpy(dtype=np.float64), kit, data.calibration, again.frames)
-        numbers = members["trial"].astype(int).tolist()
-        jumps |= {trial: jump for trial, jump in zip(numbers, made, strict=True) if jump is not None}
+        jumps |= of_trials(members, made)
     return jumps
 
 
 def _stops_rad(data: StudyData, kit: JointMaps) -> list[list[float | None]]:
-    """Ends of the ranges of hip and knee with a kit of motors, whatever the design; None where there is no stop."""
+    """Return the ends of hip's and knee's ranges with a kit, whatever the design; None where there is no stop."""
     robot = robot_arrays(PAPER_CASES["nominal"].design.as_array()[None], kit, data.calibration.mass)
-    return [
-        [None, None] if stop is None else [stop.lower_rad, stop.upper_rad]
-        for stop in end_stops(robot, data.calibration.joints)
-    ]
+    stops = end_stops(robot, data.calibration.joints)
+    return [[None, None] if stop is None else [stop.lower_rad, stop.upper_rad] for stop in stops]
 
 
 def _foot(data: StudyData) -> tuple[float, float]:
-    """Mass in kg, which the shank's mass includes, and radius in m of the simulated foot; no motor changes it."""
+    """Return mass in kg, which the shank's includes, and radius in m of the simulated foot; no motor changes it."""
     given, leg = data.calibration.mass, leg_dimensions(data.case_kit)
     mass_kg = float(foot_part(0.0, leg).mass_kg()) if given.foot_mass_kg is None else given.foot_mass_kg
     radius_m = 1e-3 * leg.foot_radius_mm if given.foot_radius_m is None else given.foot_radius_m
     return mass_kg, radius_m
 
 
-def _failures(trials: pd.DataFrame) -> dict[str, int]:
-    """Why trials failed, and how many of each."""
-    counts = trials.loc[trials["state"] == "failed", "status"].value_counts()
-    return {str(status): int(count) for status, count in counts.items()}
-
-
 def _picks(data: StudyData, front: pd.DataFrame, row_of: Mapping[int, int]) -> list[Picked]:
-    """The knee, and, if the height is an objective, the best designs at the headline heights that the front reaches."""
+    """Return the knee, and the best designs at the headline heights, if height is an objective."""
     objectives = data.study.objectives
     heights = HEADLINES_M if "height_m" in objectives.names else ()
-    named: list[tuple[str, Selector]] = [
-        ("knee", Knee()),
-        *((f"{height:g} m", MinHeight(height_m=height)) for height in heights),
-    ]
+    named: list[tuple[str, Selector]] = [("knee", Knee())]
+    named += [(f"{height:g} m", MinHeight(height_m=height)) for height in heights]
     found: list[Picked] = []
     for name, selector in named:
         try:
@@ -247,7 +220,7 @@ def _picks(data: StudyData, front: pd.DataFrame, row_of: Mapping[int, int]) -> l
 
 
 def best_of_weights(data: StudyData) -> list[tuple[float, int]]:
-    """Each run of a weighted search: the weight of the first objective, and the trial of least cost."""
+    """Return each run of a weighted search: the weight of the first objective, and the trial of least cost."""
     settings = data.study.algorithm
     if not isinstance(settings, WeightedSettings):
         return []

@@ -22,16 +22,15 @@ _POINTS = 160  # of a surface or a curve: more than a chart can show apart
 
 
 def group_of(data: StudyData) -> str:
-    """A text that is equal for studies which differ only in seed, name, description, budget or stopping rule."""
+    """Return a text that is equal for studies which differ only in seed, name, description, budget or stopping rule."""
     values = data.study.as_dict()
     for key in ("name", "description", "seed", "evaluations", "stop"):
         values.pop(key, None)
-    contents = data.meta.contents
-    return json.dumps([values, contents], sort_keys=True, default=str)
+    return json.dumps([values, data.meta.contents], sort_keys=True, default=str)
 
 
 def seed_groups(studies: Sequence[StudyData]) -> list[list[int]]:
-    """Places of the studies that are runs of one study with several seeds, and of the same length; each seed once."""
+    """Return places of the studies that are runs of one study with several seeds and one length; each seed once."""
     groups: dict[tuple[str, int], dict[int, int]] = {}
     for index, data in enumerate(studies):
         groups.setdefault((group_of(data), len(data.trials)), {}).setdefault(data.study.seed, index)
@@ -40,79 +39,72 @@ def seed_groups(studies: Sequence[StudyData]) -> list[list[int]]:
 
 def compare(studies: Sequence[StudyData], labels: Sequence[str], heights_m: Sequence[float]) -> Comparison:
     """Compare studies under the objectives of the first; all hypervolumes are measured from its reference point."""
-    reference = studies[0].reference_point
-    objectives = reference.objectives
+    reference, objectives = studies[0].reference_point, studies[0].reference_point.objectives
     with_height = "height_m" in objectives.names
     fronts = [data.front()[list(objectives.names)].to_numpy(dtype=np.float64) for data in studies]
     rows: list[dict[str, Any]] = []
     for data, label, front in zip(studies, labels, fronts, strict=True):
         found = [best_at_height(front, objectives, height) for height in heights_m] if with_height else []
-        rows.append(
-            {
-                "label": label,
-                "motor": data.study.motor_text,
-                "calibration": data.meta.calibration,
-                "algorithm": data.study.algorithm.name,
-                "seed": data.study.seed,
-                "evaluations": len(data.trials),
-                "front": len(front),
-                "hypervolume": round(hypervolume(front, reference), 4),
-                "at_height": [None if best is None or best.value is None else number(best.value) for best in found],
-            }
-        )
+        values = {
+            "label": label,
+            "motor": data.study.motor_text,
+            "calibration": data.meta.calibration,
+            "algorithm": data.study.algorithm.name,
+            "seed": data.study.seed,
+            "evaluations": len(data.trials),
+            "front": len(front),
+            "hypervolume": round(hypervolume(front, reference), 4),
+            "at_height": [None if best is None or best.value is None else number(best.value) for best in found],
+        }
+        rows.append(values)
     several = [members for members in seed_groups(studies) if len(members) > 1]
+    named = [[labels[i] for i in members] for members in several]
+    runs = list(zip(several, named, strict=True)) if len(objectives.names) == 2 else []
     return Comparison(
         reference=reference.text(),
         hypervolume_unit=objectives.volume_unit,
         other=objectives.other_than("height_m").name,
         heights_m=list(heights_m) if with_height else [],
         rows=rows,
-        surfaces=[
-            _surface([fronts[i] for i in members], [labels[i] for i in members], objectives) for members in several
-        ]
-        if len(objectives.names) == 2
-        else [],
-        growth=[_growth([studies[i] for i in members], [labels[i] for i in members]) for members in several],
+        surfaces=[_surface([fronts[i] for i in members], names, objectives) for members, names in runs],
+        growth=[_growth([studies[i] for i in members], names) for members, names in zip(several, named, strict=True)],
         choices=_choices(studies),
     )
 
 
 def _choices(studies: Sequence[StudyData]) -> list[dict[str, Any]]:
-    """The designs that two fronts by the two energies offer at some heights, as JSON values; else an empty list."""
+    """Return what two fronts by the two energies offer at some heights, as JSON values, if there are such fronts."""
     pair = two_fronts(studies)
     if pair is None:
         return []
-    sides = ("mechanical", "battery")
-    return [
-        {"height_m": row.height_m, "cost": row.cost} | {side: _plain(getattr(row, side)) for side in sides}
-        for row in choices(*pair)
-    ]
+    found = []
+    for row in choices(*pair):
+        sides = {"mechanical": _plain(row.mechanical), "battery": _plain(row.battery)}
+        found.append({"height_m": row.height_m, "cost": row.cost, **sides})
+    return found
 
 
 def _plain(choice: Choice | None) -> dict[str, Any] | None:
-    return (
-        None
-        if choice is None
-        else {name: value if isinstance(value, str) else number(value) for name, value in asdict(choice).items()}
-    )
+    if choice is None:
+        return None
+    return {name: value if isinstance(value, str) else number(value) for name, value in asdict(choice).items()}
 
 
 def least_second(front: Floats, levels: Floats, objectives: Objectives = HEIGHT_AND_ENERGY) -> Floats:
-    """Best second objective of a front, shape (n, 2), for each level of the first or better, shape (m,).
+    """Return the best second objective of a front, shape (n, 2), per level of the first or better, shape (m,).
 
     In the sign that makes less better; infinite where no design reaches the level. With the paper's objectives it is
     the least energy for at least each height.
     """
     points = objectives.minimised(front)
     reach = points[:, 0][None, :] <= (levels * objectives.signs[0])[:, None]
-    least: Floats = np.where(reach, points[:, 1][None, :], np.inf).min(axis=1, initial=np.inf)
-    return least
+    return np.asarray(np.where(reach, points[:, 1][None, :], np.inf).min(axis=1, initial=np.inf))
 
 
 def _surface(
     fronts: Sequence[Floats], labels: Sequence[str], objectives: Objectives = HEIGHT_AND_ENERGY
 ) -> dict[str, Any]:
-    """Empirical attainment surfaces (Grunert da Fonseca et al. 2001): what one, half and all of the runs reached.
+    """Return empirical attainment surfaces (Grunert da Fonseca et al. 2001): what one, half, all of the runs reached.
 
     For two objectives, a surface is an order statistic of the runs' best second objectives at each level of the first,
     such as their least energies at each height. The median is what half of the runs reach: of an even number, the
@@ -134,7 +126,7 @@ def _surface(
 
 
 def _growth(studies: Sequence[StudyData], labels: Sequence[str]) -> dict[str, Any]:
-    """Least, median and greatest hypervolume over evaluations, where all runs have values."""
+    """Return least, median and greatest hypervolume over evaluations, where all runs have values."""
     histories = [data.history[["evaluations", "hypervolume"]].to_numpy(dtype=np.float64) for data in studies]
     histories = [history for history in histories if len(history)]
     if not histories:
@@ -154,6 +146,6 @@ def _growth(studies: Sequence[StudyData], labels: Sequence[str]) -> dict[str, An
 
 
 def _held(history: Floats, at: Floats) -> Floats:
-    """The latest value at each number of evaluations, 0 before the first."""
+    """Return the latest value at each number of evaluations, 0 before the first."""
     place = np.searchsorted(history[:, 0], at, side="right") - 1
     return np.where(place >= 0, history[np.maximum(place, 0), 1], 0.0)

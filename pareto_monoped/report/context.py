@@ -19,6 +19,9 @@ from pareto_monoped.report.tables import safe
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Words = Annotated[str, Field(min_length=1)]
+_WIDTH, _HEIGHT, _LEFT, _RIGHT, _TOP, _BOTTOM = 460, 330, 46, 14, 12, 40  # pixels of the chart and of its margins
+_MASSES_KG, _HEIGHTS_M = (0.005, 20.0), (0.1, 20.0)  # of its axes
+Box = tuple[float, float, float, float]  #: Left, right, top and bottom of a rectangle in the chart.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,27 +48,26 @@ class _Jumpers:
 
 @lru_cache(maxsize=1)
 def published_jumpers() -> tuple[Jumper, ...]:
-    """The jumpers of ``data/jumping_robots.toml``."""
+    """Return the jumpers of ``data/jumping_robots.toml``."""
     name = "jumping_robots.toml"
     return checked(_Jumpers, read_shipped(name, what="table of jumpers"), source=f"table of jumpers {name!r}").robots
 
 
 def own_jumpers(payload: Payload) -> list[Jumper]:
-    """The paper's Case C as simulated here, and of each front the most agile design, the knee and the highest jump."""
+    """Return the paper's Case C as simulated here, and the most agile, the knee and the highest of each front."""
     found = []
     for case in payload.studies[0].cases:
         agility = case.measures.get("agility_m_per_s")
         if case.name == "C" and case.height_m is not None and case.mass_kg is not None and agility is not None:
-            found.append(
-                Jumper(
-                    name="the paper's Case C, simulated here",
-                    drive=f"one leg; {payload.studies[0].case_motor}",
-                    source="this report",
-                    mass_kg=float(case.mass_kg),
-                    height_m=float(case.height_m) - BASE_START_HEIGHT_M,
-                    agility_m_per_s=float(agility),
-                )
+            case_c = Jumper(
+                name="the paper's Case C, simulated here",
+                drive=f"one leg; {payload.studies[0].case_motor}",
+                source="this report",
+                mass_kg=float(case.mass_kg),
+                height_m=float(case.height_m) - BASE_START_HEIGHT_M,
+                agility_m_per_s=float(agility),
             )
+            found.append(case_c)
     for card in payload.studies:
         named: dict[int, list[str]] = {}
         for what, place in _places(card).items():
@@ -77,7 +79,7 @@ def own_jumpers(payload: Payload) -> list[Jumper]:
 
 
 def _places(card: StudyCard) -> dict[str, int]:
-    """Places on the front of the designs that stand for it, by what they are."""
+    """Return the places on the front of the designs that stand for it, by what they are."""
     rows = list(card.front)
     if not rows:
         return {}
@@ -89,7 +91,7 @@ def _places(card: StudyCard) -> dict[str, int]:
 
 
 def _agilities_m_per_s(card: StudyCard) -> NDArray[np.float64]:
-    """Of the designs on the front, in its order; NaN where it is not known."""
+    """Return agilities of the designs on the front, in its order; NaN where they are not known."""
     name, rows = "agility_m_per_s", list(card.front)
     if name in card.trials.packed:
         return unpacked_column(card.trials.packed[name])[rows]
@@ -116,23 +118,16 @@ def _design(payload: Payload, card: StudyCard, place: int, what: str) -> Jumper:
 
 
 def context_section(payload: Payload) -> str:
-    """The chart and the table, the most agile first; those without a known agility follow by height."""
+    """Return the chart and the table, the most agile first; those without a known agility follow by height."""
     own = own_jumpers(payload)
     everyone = [*((jumper, False) for jumper in published_jumpers()), *((jumper, True) for jumper in own)]
     everyone.sort(key=lambda entry: (-(entry[0].agility_m_per_s or 0.0), -(entry[0].height_m or 0.0)))
     most = max((jumper.agility_m_per_s or 0.0 for jumper, _ in everyone), default=1.0)
     sources = list(dict.fromkeys(jumper.source for jumper, ours in everyone if not ours))
-    head = "".join(
-        f'<th scope="col"{kind}>{safe(words)}</th>'
-        for words, kind in (
-            ("jumper", ""),
-            ("agility, m/s", ' class="agility"'),
-            ("height gained, m", ' class="n"'),
-            ("mass, kg", ' class="n"'),
-            ("drive", ""),
-            ("source", ' class="n"'),
-        )
-    )
+    bar, right = ' class="agility"', ' class="n"'
+    heads = [("jumper", ""), ("agility, m/s", bar), ("height gained, m", right)]
+    heads += [("mass, kg", right), ("drive", ""), ("source", right)]
+    head = "".join(f'<th scope="col"{style}>{safe(words)}</th>' for words, style in heads)
     body = "".join(_row(jumper, ours, most, sources) for jumper, ours in everyone)
     words = (
         "Vertical jumping agility is the height gained in a jump over the time from the start of the push to the apex "
@@ -155,9 +150,8 @@ def _row(jumper: Jumper, ours: bool, most: float, sources: Sequence[str]) -> str
     if jumper.agility_m_per_s is not None:
         width = 100.0 * jumper.agility_m_per_s / most
         agility = f'<i style="width: {width:.0f}%"></i><b>{jumper.agility_m_per_s:.2f}</b>'
-    cells = "".join(
-        f'<td class="n">{"" if value is None else f"{value:.3g}"}</td>' for value in (jumper.height_m, jumper.mass_kg)
-    )
+    values = ("" if value is None else f"{value:.3g}" for value in (jumper.height_m, jumper.mass_kg))
+    cells = "".join(f'<td class="n">{value}</td>' for value in values)
     row = '<tr class="ours">' if ours else "<tr>"
     source = jumper.source if ours else f"[{sources.index(jumper.source) + 1}]"
     return (
@@ -166,12 +160,8 @@ def _row(jumper: Jumper, ours: bool, most: float, sources: Sequence[str]) -> str
     )
 
 
-_WIDTH, _HEIGHT, _LEFT, _RIGHT, _TOP, _BOTTOM = 460, 330, 46, 14, 12, 40  # pixels of the chart and of its margins
-_MASSES_KG, _HEIGHTS_M = (0.005, 20.0), (0.1, 20.0)  # of its axes
-
-
 def _chart(own: Sequence[Jumper]) -> str:
-    """Height gained over mass, both logarithmic, as SVG in the page's colours."""
+    """Return height gained over mass, both logarithmic, as SVG in the page's colours."""
     everyone = [*((jumper, False) for jumper in published_jumpers()), *((jumper, True) for jumper in own)]
     shown = [(jumper, ours) for jumper, ours in everyone if jumper.mass_kg and jumper.height_m]
     places = [(_x(jumper.mass_kg or 1.0), _y(jumper.height_m or 1.0)) for jumper, _ in shown]
@@ -192,12 +182,8 @@ def _chart(own: Sequence[Jumper]) -> str:
     return f'<figure class="context-chart">{svg}<figcaption class="small">{note}</figcaption></figure>'
 
 
-Box = tuple[float, float, float, float]
-"""Left, right, top and bottom of a rectangle in the chart."""
-
-
 def _label_place(x: float, y: float, wide: float, taken: Sequence[Box]) -> tuple[Box, str, float, float]:
-    """Where the label of a point at (x, y) covers nothing: its rectangle, anchor, and offset from the point."""
+    """Return where the label of a point at (x, y) covers nothing: its rectangle, anchor, and offset from the point."""
     tries = (
         ((x + 8.0, x + 8.0 + wide, y - 6.0, y + 4.0), "start", 8.0, 4.0),
         ((x - 8.0 - wide, x - 8.0, y - 6.0, y + 4.0), "end", -8.0, 4.0),
@@ -236,7 +222,6 @@ def _axes() -> str:
         parts.append(f'<text x="{left - 5}" y="{y + 4:.1f}" text-anchor="end">{height:g}</text>')
     middle = (top + bottom) / 2
     parts.append(f'<text x="{(left + right) / 2}" y="{_HEIGHT - 8}" text-anchor="middle">mass, kg</text>')
-    parts.append(
-        f'<text x="13" y="{middle}" text-anchor="middle" transform="rotate(-90 13 {middle})">height gained, m</text>'
-    )
+    turn = f"rotate(-90 13 {middle})"
+    parts.append(f'<text x="13" y="{middle}" text-anchor="middle" transform="{turn}">height gained, m</text>')
     return "".join(parts)

@@ -18,8 +18,7 @@ from pareto_monoped.storage.reader import StudyData
 
 Floats = NDArray[np.float64]
 
-MOST_TRIANGLES = 60_000
-"""Triangles of all models of a study together; they take about 1.7 MB of the page."""
+MOST_TRIANGLES = 60_000  #: Triangles of all models of a study together; they take about 1.7 MB of the page.
 _LEAST = 24  # triangles that even the smallest body keeps
 _FINEST_MM = 0.1
 _GREY = (170, 176, 184)
@@ -30,15 +29,10 @@ _FOLDER = re.compile(r"^trial_(\d+)$")
 def read_models(
     folder: Path, studies: Sequence[StudyData], *, note: Callable[[str], None] = lambda _: None
 ) -> list[Mapping[int, Model3D]]:
-    """The exported designs of some studies: per study, models by trial.
+    """Return the exported designs of some studies, from folders ``trial_N``: per study, models by trial.
 
-    A folder ``trial_N`` counts for a study if it is an up-to-date export of its trial N, in any pose, or has a GLB file
-    but no record.
-
-    Args:
-        folder: holds the folders ``trial_N``.
-        studies: whose trials may have been exported.
-        note: called with a line of text for each export that is left out.
+    A folder counts for a study if it is an up-to-date export of its trial N, in any pose, or has a GLB file but no
+    record. ``note`` is called with a line of text for each export that is left out.
 
     Raises:
         OutputError: the folder does not exist.
@@ -56,14 +50,12 @@ def read_models(
             f"{str(exported[trial])!r} is left out: it is not an up-to-date export of trial {trial} of this study; "
             "export it again with --force"
         )
-    return [
-        {trial: read_glb(exported[trial] / _MODEL, MOST_TRIANGLES // len(trials)) for trial in trials}
-        for trials in found
-    ]
+    shares = [MOST_TRIANGLES // len(trials) if trials else 0 for trials in found]
+    return [{k: read_glb(exported[k] / _MODEL, share) for k in one} for one, share in zip(found, shares, strict=True)]
 
 
 def _is_export(folder: Path, data: StudyData, trial: int) -> bool:
-    """Whether a folder holds an up-to-date export of a trial; a GLB file without a record is taken for one."""
+    """Return whether a folder holds an up-to-date export of a trial; a GLB file without a record is taken for one."""
     if not (data.trials["trial"] == trial).any():
         return False
     if not (folder / RECORD).exists():
@@ -72,7 +64,7 @@ def _is_export(folder: Path, data: StudyData, trial: int) -> bool:
 
 
 def read_glb(path: Path, most: int = MOST_TRIANGLES) -> Model3D:
-    """Triangles of a GLB file with their colours, about ``most`` of them at the most."""
+    """Return the triangles of a GLB file with their colours, at most about ``most``."""
     import trimesh
 
     scene = trimesh.load_scene(path)
@@ -88,17 +80,13 @@ def read_glb(path: Path, most: int = MOST_TRIANGLES) -> Model3D:
 
 
 def model_of(bodies: Sequence[tuple[Floats, tuple[int, int, int]]], most: int) -> Model3D:
-    """One model of several bodies, each coarse enough for its share of ``most``; large bodies get larger shares.
+    """Return a model of bodies (corners in mm, shape (n, 3, 3), colour), each coarse enough for its share of ``most``.
 
-    Args:
-        bodies: for each, its triangles' corners in mm, shape (n, 3, 3), and its colour, 0 to 255.
-        most: triangles in total; more if there are so many bodies that each has only its least number.
+    Large bodies get larger shares; there are more triangles if so many bodies have only their least number.
     """
     sizes = [float(np.linalg.norm(np.ptp(corners.reshape(-1, 3), axis=0))) for corners, _ in bodies]
-    reduced = [
-        coarser(corners, max(int(most * size / sum(sizes)), _LEAST))
-        for (corners, _), size in zip(bodies, sizes, strict=True)
-    ]
+    most_of = [max(int(most * size / sum(sizes)), _LEAST) for size in sizes]
+    reduced = [coarser(corners, share) for (corners, _), share in zip(bodies, most_of, strict=True)]
     before = sum(len(corners) for corners, _ in bodies)
     triangles = np.concatenate([np.zeros((0, 3, 3)), *reduced])
     colours = [np.tile(colour, (len(left), 1)) for left, (_, colour) in zip(reduced, bodies, strict=True)]
@@ -115,17 +103,10 @@ def model_of(bodies: Sequence[tuple[Floats, tuple[int, int, int]]], most: int) -
 
 
 def coarser(triangles_mm: Floats, most: int) -> Floats:
-    """At most ``most`` triangles of about the same shape.
+    """Return at most ``most`` triangles of about the same shape; the corners in mm have the shape (n, 3, 3).
 
     Corners are rounded to a grid, and triangles that become flat or equal are dropped; the grid is widened until few
     enough are left. This is vertex clustering (Rossignac and Borrel 1993): crude, but off by no more than the grid.
-
-    Args:
-        triangles_mm: corners, shape (n, 3, 3).
-        most: triangles that may be left.
-
-    Returns:
-        Corners in mm, shape (m, 3, 3).
     """
     if len(triangles_mm) <= most:
         return triangles_mm
@@ -141,8 +122,7 @@ def coarser(triangles_mm: Floats, most: int) -> Floats:
         new[1:] = (corners[order[1:]] != corners[order[:-1]]).any(axis=1)
         kept = np.sort(order[new])
         if len(kept) <= most:
-            thinned: Floats = grid[kept] * step + middle
-            return thinned
+            return np.asarray(grid[kept] * step + middle)
         step *= 1.25
 
 
@@ -151,7 +131,7 @@ def _base64(values: NDArray[Any]) -> str:
 
 
 def _colour(mesh: object) -> tuple[int, int, int]:
-    """Base colour of a mesh, grey if it has none."""
+    """Return the base colour of a mesh, grey if it has none."""
     material = getattr(getattr(mesh, "visual", None), "material", None)
     base = getattr(material, "baseColorFactor", None)
     if base is None:

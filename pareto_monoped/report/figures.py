@@ -1,7 +1,4 @@
-"""The main figures for papers: SVG and PNG in a plain style that stays readable in black and white.
-
-A chart of sensitivities as a page of its own.
-"""
+"""Figures for papers, as SVG and PNG in a plain style that stays readable in black and white, and of sensitivities."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -27,17 +24,15 @@ _DPI = 300
 _FORMATS = ("svg", "png")
 _FIXED = {"svg": {"Date": None}, "png": {"Software": None}, "pdf": {"CreationDate": None}}
 """File information that would change from one run to the next, left out."""
+_FAMILY_STYLES = {"ISSPG": STYLES[2], "ESSPG": STYLES[0]}
+_TINTS = {**JOINTS, "base": "black", "foot": "#777777"}
+_TITLES = {"variables": "variables, moved a little", "assumptions": "what is uncertain in a built robot"}
+_COLOURS = ("#3b6ea8", "#b5651d")
+_ROW_PX, _MARGIN_PX = 26, 150
 
 
 def write_figures(payload: Payload, folder: Path, *, force: bool = False) -> list[Path]:
-    """Write every figure that the payload has data for; ``force`` as for ``files.replacing``.
-
-    Returns:
-        The files.
-
-    Raises:
-        OutputError: the folder cannot be made or written to.
-    """
+    """Write every figure that the payload has data for, and return the files; raise ``OutputError`` if that fails."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -57,16 +52,19 @@ def write_figures(payload: Payload, folder: Path, *, force: bool = False) -> lis
             if not make(payload, figure):
                 continue
             for kind in _FORMATS:
-                path = folder / f"{name}.{kind}"
-                with replacing(path, force=force) as temporary:
-                    figure.savefig(temporary, format=kind, dpi=_DPI, metadata=_FIXED[kind])
-                written.append(path)
+                written.append(folder / f"{name}.{kind}")
+                _saved(figure, written[-1], kind, force)
     return written
+
+
+def _saved(figure: Any, path: Path, kind: str, force: bool) -> None:
+    with replacing(path, force=force) as temporary:
+        figure.savefig(temporary, format=kind, dpi=_DPI, metadata=_FIXED[kind])
 
 
 @contextmanager
 def _style() -> Iterator[Any]:
-    """Matplotlib's figure class, with the style for print in force until the end of the context."""
+    """Return Matplotlib's figure class, with the style for print in force until the end of the context."""
     import matplotlib
     from matplotlib.figure import Figure
 
@@ -94,14 +92,8 @@ def _convergence(payload: Payload, figure: Any) -> bool:
         x, y = (values(card.history[name]) for name in ("evaluations", "hypervolume"))
         if not alike and len(y):
             y = 100.0 * y / (y[-1] or 1.0)
-        axes.plot(
-            x,
-            y,
-            drawstyle="steps-post",
-            color=STYLES[i % len(STYLES)][0],
-            ls=("-", "--", ":", "-.")[i % 4],
-            label=card.label,
-        )
+        tint, line = STYLES[i % len(STYLES)][0], ("-", "--", ":", "-.")[i % 4]
+        axes.plot(x, y, drawstyle="steps-post", color=tint, ls=line, label=card.label)
     for growth in payload.comparison.growth if payload.comparison else ():
         x = values(growth["evaluations"])
         low, high = values(growth["low"]), values(growth["high"])
@@ -148,11 +140,8 @@ def _map(payload: Payload, figure: Any) -> bool:
     return bool(payload.maps)
 
 
-_FAMILY_STYLES = {"ISSPG": STYLES[2], "ESSPG": STYLES[0]}
-
-
 def _family_points(axes: Any, family: str, x: ArrayLike, y: ArrayLike, of: str, *, hollow: bool) -> None:
-    """Masses of one family over the ratio; ``of`` tells several maps apart."""
+    """Draw masses of one family over the ratio; ``of`` tells several maps apart."""
     tint, symbol = _FAMILY_STYLES[family]
     fill = "white" if hollow else tint
     axes.plot(x, y, symbol, ms=2.5, ls="", color=tint, mfc=fill, label=f"{family}, {of}" if of else family)
@@ -166,10 +155,8 @@ def _map_axes(axes: Any) -> None:
 def write_map_figure(maps: Mapping[str, ActuatorMap], path: Path, *, force: bool = False) -> None:
     """Draw the least mass of both families over the ratio.
 
-    Args:
-        maps: by what tells them apart in the legend, such as the rules; the first is drawn filled, the others hollow.
-        path: ends in .svg, .png or .pdf.
-        force: as for ``files.replacing``.
+    ``maps`` goes by what tells them apart in the legend, such as the rules: the first is drawn filled, the others
+    hollow. ``path`` ends in .svg, .png or .pdf.
 
     Raises:
         OutputError: another ending, or the file cannot be written.
@@ -189,8 +176,7 @@ def write_map_figure(maps: Mapping[str, ActuatorMap], path: Path, *, force: bool
                     _family_points(axes, family, *points, name, hollow=number > 0)
         _map_axes(axes)
         axes.set_title(" and ".join(dict.fromkeys(m.motor.name for m in maps.values())), fontsize=8)
-        with replacing(path, force=force) as temporary:
-            figure.savefig(temporary, format=kind, dpi=_DPI, metadata=_FIXED[kind])
+        _saved(figure, path, kind, force)
 
 
 def _links(payload: Payload, figure: Any) -> bool:
@@ -207,7 +193,7 @@ def _links(payload: Payload, figure: Any) -> bool:
 
 
 def _states(payload: Payload, figure: Any) -> bool:
-    """States and inputs over time, like a figure of the paper, for the first picked design whose jump is kept."""
+    """Draw states and inputs over time, like a figure of the paper, for the first picked design with a kept jump."""
     found = _knee_jump(payload)
     if found is None:
         return False
@@ -236,11 +222,7 @@ def _states(payload: Payload, figure: Any) -> bool:
     return True
 
 
-_TINTS = {**JOINTS, "base": "black", "foot": "#777777"}
-
-
 def _knee_jump(payload: Payload) -> tuple[StudyCard, int, str] | None:
-    """Study, row of its trials, and title of the first picked design that jumps."""
     for card in payload.studies:
         for picked in card.picks:
             trial = card.trials.trial[picked.row]
@@ -250,7 +232,7 @@ def _knee_jump(payload: Payload) -> tuple[StudyCard, int, str] | None:
 
 
 def _states_data(card: StudyCard, row: int) -> dict[str, Any]:
-    """The columns of a jump with the height of the foot, and the time of lift-off."""
+    """Return the columns of a jump with the height of the foot, and the time of lift-off."""
     trial = card.trials.trial[row]
     data: dict[str, Any] = dict(unpacked(card.jumps, trial))
     thigh, shank = (float(card.trials.columns[name][row] or 0.0) for name in ("thigh_length_m", "shank_length_m"))
@@ -259,7 +241,7 @@ def _states_data(card: StudyCard, row: int) -> dict[str, Any]:
 
 
 def _torque_limits_n_m(payload: Payload, card: StudyCard, row: int) -> dict[str, float]:
-    """Peak torque of the gearbox of each joint; without those that no gearbox is known of."""
+    """Return the peak torque of the gearbox of each joint; without those that no gearbox is known of."""
     numbers = {joint: card.trials.columns[f"{joint}_gearbox"][row] for joint in ("hip", "knee")}
     return {
         joint: payload.gearboxes[int(number)].peak_torque_n_m
@@ -268,19 +250,8 @@ def _torque_limits_n_m(payload: Payload, card: StudyCard, row: int) -> dict[str,
     }
 
 
-_TITLES = {"variables": "variables, moved a little", "assumptions": "what is uncertain in a built robot"}
-_COLOURS = ("#3b6ea8", "#b5651d")
-_ROW_PX, _MARGIN_PX = 26, 150
-
-
 def sensitivity_figure(trial: int, found: Sequence[Sensitivity], shown: Sequence[Measure]) -> Any:
-    """Bars of total Sobol' indices with their 95 percent intervals, a panel per kind of factors.
-
-    Args:
-        trial: the design.
-        found: its sensitivities.
-        shown: measures, in the order of their bars.
-    """
+    """Return bars of total Sobol' indices with 95 percent intervals, a panel per kind of factors."""
     from plotly.graph_objects import Bar, Figure
     from plotly.subplots import make_subplots
 
@@ -307,9 +278,7 @@ def sensitivity_figure(trial: int, found: Sequence[Sensitivity], shown: Sequence
                     y=[f"{factor.factor.label}, {factor.factor.text}" for factor in ranked],
                     x=[100.0 * influence.total for influence in influences],
                     error_x={"type": "data", "array": [100.0 * influence.error for influence in influences]},
-                    customdata=[
-                        f"{influence.change * entry.scale:+.3g} {entry.shown_unit}" for influence in influences
-                    ],
+                    customdata=[f"{one.change * entry.scale:+.3g} {entry.shown_unit}" for one in influences],
                     hovertemplate="%{y}<br>%{x:.0f} % of the variance<br>%{customdata} from end to end<extra></extra>",
                 ),
                 row=row,
@@ -328,6 +297,5 @@ def sensitivity_figure(trial: int, found: Sequence[Sensitivity], shown: Sequence
 
 
 def sensitivity_page(trial: int, found: Sequence[Sensitivity], shown: Sequence[Measure]) -> str:
-    """The chart as HTML that needs no network."""
-    text: str = sensitivity_figure(trial, found, shown).to_html(include_plotlyjs=True, full_html=True)
-    return text
+    """Return the chart as HTML that needs no network."""
+    return str(sensitivity_figure(trial, found, shown).to_html(include_plotlyjs=True, full_html=True))

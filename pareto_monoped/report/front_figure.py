@@ -18,26 +18,24 @@ JOINTS = {"hip": "#a3487f", "knee": "#0072b2"}
 """The page's colours of the joints (--hip, --knee)."""
 ABOVE: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": 2, "borderaxespad": 0.1}
 """Where a legend covers no data: in rows above its axes."""
-Mark = tuple[float, float, str]
-"""Where a design stands, to the right and upward, in the units shown, and its name."""
-Axes2 = tuple[str, str]
-"""The measures to the right and upward."""
+Mark = tuple[float, float, str]  #: Where a design stands, to the right and upward, in the units shown, and its name.
+Axes2 = tuple[str, str]  #: The measures to the right and upward.
 
 
 def values(column: Column, rows: Sequence[int] | None = None) -> NDArray[np.float64]:
-    """A column, or some of its rows, with NaN where there is no value."""
+    """Return a column, or some of its rows, with NaN where there is no value."""
     chosen = column if rows is None else [column[row] for row in rows]
     return np.array([np.nan if value is None else value for value in chosen], dtype=np.float64)
 
 
 def _places(card: StudyCard, rows: Sequence[int], across_up: Axes2) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Where trials stand, to the right and upward, in the units shown."""
+    """Return where trials stand, to the right and upward, in the units shown."""
     across, up = (values(card.trials.columns[name], rows) * measure(name).scale for name in across_up)
     return across, up
 
 
 def front_figure(payload: Payload, figure: Any) -> bool:
-    """The first objective upward over the second; a third is the colour of the designs on the front."""
+    """Return the first objective upward over the second; a third is the colour of the designs on the front."""
     axes = figure.add_subplot()
     up, across, *third = payload.objectives
     places = (across, up)
@@ -61,36 +59,32 @@ def front_figure(payload: Payload, figure: Any) -> bool:
 
 
 def _limits(axes: Any, payload: Payload, marks: Sequence[Mark], places: Axes2) -> None:
-    """Limits of both axes that show every mark; with height over energy they begin at the start, and show the floor."""
+    """Set limits that show every mark; with height over energy they begin at the start, and show the floor."""
     right, high = max((mark[0] for mark in marks), default=1.0), max((mark[1] for mark in marks), default=1.0)
     if places[1] == "height_m" and places[0] in ENERGIES:
         _floor(axes, payload, 1.1 * right)
         axes.set(xlim=(0.0, 1.06 * right), ylim=(BASE_START_HEIGHT_M, high + 0.06))
         return
-    for found, setter in (
-        ([mark[0] for mark in marks], axes.set_xlim),
-        ([mark[1] for mark in marks], axes.set_ylim),
-    ):
-        if not found:
-            continue
-        room = 0.06 * (max(found) - min(found)) or 0.1
-        setter(min(found) - room, max(found) + room)
+    sides = ([mark[0] for mark in marks], axes.set_xlim), ([mark[1] for mark in marks], axes.set_ylim)
+    for found, setter in sides:
+        if found:
+            room = 0.06 * (max(found) - min(found)) or 0.1
+            setter(min(found) - room, max(found) + room)
 
 
 def axis_title(name: str) -> str:
-    """A measure with the unit that it is shown in."""
+    """Return a measure with the unit that it is shown in."""
     entry = measure(name)
     return f"{entry.label} ({entry.shown_unit})"
 
 
 def _designs(card: StudyCard, places: Axes2) -> list[Mark]:
-    """The designs on the front, unnamed."""
     across, up = _places(card, card.front, places)
     return [(x, y, "") for x, y in zip(across.tolist(), up.tolist(), strict=True) if np.isfinite(x + y)]
 
 
 def _simulated(card: StudyCard, places: Axes2) -> list[Mark]:
-    """The paper's designs as simulated for a study, without those that do not jump."""
+    """Return the paper's designs as simulated for a study, without those that do not jump."""
     marks = []
     for case in card.cases:
         known = {**case.measures, "height_m": case.height_m, "energy_j": case.energy_j}
@@ -101,7 +95,7 @@ def _simulated(card: StudyCard, places: Axes2) -> list[Mark]:
 
 
 def _cloud_and_front(axes: Any, card: StudyCard, number: int, places: Axes2, third: Sequence[str]) -> None:
-    """A study's dominated designs as faint dots, and its front as a line of steps, or as dots if that is no line."""
+    """Draw a study's dominated designs as faint dots, and its front as steps, or as dots if that is no line."""
     tint, symbol = STYLES[number % len(STYLES)]
     on_front = set(card.front)
     others = [row for row, letter in enumerate(card.trials.state) if letter == "f" and row not in on_front]
@@ -120,7 +114,7 @@ def _cloud_and_front(axes: Any, card: StudyCard, number: int, places: Axes2, thi
 
 
 def _motors(axes: Any, payload: Payload, card: StudyCard, places: Axes2, third: Sequence[str]) -> None:
-    """The designs on the front with a colour and a mark for each kit of motors, where the study has several."""
+    """Draw the designs on the front with a colour and a mark per kit of motors, where the study has several."""
     if "motor" not in card.trials.columns:
         return
     across, up = _places(card, card.front, places)
@@ -136,7 +130,7 @@ def _motors(axes: Any, payload: Payload, card: StudyCard, places: Axes2, third: 
 
 
 def _diamonds(axes: Any, marks: Sequence[Mark], fill: str, label: str) -> None:
-    """Designs of the paper, with their names on sides where they do not cover each other."""
+    """Draw designs of the paper, with their names on sides where they do not cover each other."""
     if not marks:
         return
     energy, height, _ = zip(*marks, strict=True)
@@ -147,7 +141,7 @@ def _diamonds(axes: Any, marks: Sequence[Mark], fill: str, label: str) -> None:
 
 
 def _floor(axes: Any, payload: Payload, energy_j: float) -> None:
-    """The height to which an energy raises the lightest robot, from 0 to ``energy_j``."""
+    """Draw the height to which an energy raises the lightest robot, from 0 to ``energy_j``."""
     masses = [card.floor_mass_kg for card in payload.studies if card.floor_mass_kg is not None]
     if not masses:
         return

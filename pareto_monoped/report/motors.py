@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from pareto_monoped.actuator.actuator import Actuator
     from pareto_monoped.actuator.ratiomap import ActuatorMap
 
-_HIGHEST_RATIO = 9.0
-"""Intervals above this ratio are shown only if they have a gearbox: stage 2 does not search there."""
+_HIGHEST_RATIO = 9.0  # intervals above this ratio are shown only if they have a gearbox: stage 2 does not search there
 _LENGTHS_M = np.linspace(0.15, 0.55, 81)  # of the chart of link masses: from short links to beyond the paper's bounds
 
 
@@ -34,12 +33,7 @@ class MotorTables:
 
 
 def motor_tables(actuator_map: "ActuatorMap", first: int) -> MotorTables:
-    """The stage 1 map of a motor.
-
-    Args:
-        actuator_map: the map.
-        first: number of its first gearbox on the page.
-    """
+    """Return the stage 1 map of a motor, whose gearboxes are numbered from ``first``."""
     gearboxes: list[Gearbox] = []
     points = []
     for entry in actuator_map.entries:
@@ -50,36 +44,28 @@ def motor_tables(actuator_map: "ActuatorMap", first: int) -> MotorTables:
             gearbox = first + len(gearboxes)
             gearboxes.append(_gearbox(entry.actuator))
         lightest = {family: found.best.mass_kg for family, found in entry.families.items() if found.best is not None}
-        points.append(
-            MapPoint(
-                ratio_low=entry.ratio_low,
-                gearbox=gearbox,
-                reason="" if entry.actuator is not None else entry.why_not(),
-                family_mass_kg={family: round(mass_kg, 4) for family, mass_kg in lightest.items()},
-            )
+        point = MapPoint(
+            ratio_low=entry.ratio_low,
+            gearbox=gearbox,
+            reason="" if entry.actuator is not None else entry.why_not(),
+            family_mass_kg={family: round(mass_kg, 4) for family, mass_kg in lightest.items()},
         )
+        points.append(point)
     low, following = actuator_map.ratios_low[:2]
-    return MotorTables(
-        gearboxes=gearboxes,
-        map=MotorMap(
-            motor=actuator_map.motor.name,
-            points=points,
-            ratio_step=round(float(following - low), 6),
-            leg=leg_table(leg_dimensions(actuator_map)),
-        ),
-    )
+    step, leg = round(float(following - low), 6), leg_table(leg_dimensions(actuator_map))
+    found = MotorMap(motor=actuator_map.motor.name, points=points, ratio_step=step, leg=leg)
+    return MotorTables(gearboxes=gearboxes, map=found)
 
 
 def gearbox_numbers(actuator_map: "ActuatorMap", ratios: NDArray[np.float64], first: int) -> list[int]:
-    """Numbers of the gearboxes that ratios get, shape (n,), counted as in ``motor_tables``; -1 where there is none."""
+    """Return the numbers of the gearboxes that ratios get, shape (n,), as in ``motor_tables``; -1 for none."""
     has_gearbox = np.array([entry.actuator is not None for entry in actuator_map.entries])
     interval = actuator_map.interval_index(ratios)
-    numbers: list[int] = np.where(interval >= 0, first + (np.cumsum(has_gearbox) - 1)[interval], -1).tolist()
-    return numbers
+    return list(np.where(interval >= 0, first + (np.cumsum(has_gearbox) - 1)[interval], -1).tolist())
 
 
 def leg_table(d: LegDimensions) -> LegTable:
-    """Link masses over link length, and the dimensions of the page's drawing."""
+    """Return link masses over link length, and the dimensions of the page's drawing."""
     top = _upper_end(d)
     return LegTable(
         length_m=column(_LENGTHS_M),
@@ -98,7 +84,7 @@ def leg_table(d: LegDimensions) -> LegTable:
 
 
 def _upper_end(d: LegDimensions) -> Arc:
-    """The round upper end of the base's cheeks; it does not depend on the knee actuator's length."""
+    """Return the round upper end of the base's cheeks; it does not depend on the knee actuator's length."""
     cheek = next(part for part in base_parts(0.1, d) if part.role is Role.PLATE)
     outline = cheek.prisms[0].outline
     assert isinstance(outline, Path)

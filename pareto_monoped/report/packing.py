@@ -1,12 +1,9 @@
-"""Jumps as text, small enough that a page can hold one for every design of its fronts.
+"""Numbers as text for the page: rounded, columns that a browser reads without parsing, and packed jumps.
 
-Every column of a jump is rounded to whole counts. Each count is predicted from those before it, and how far the
-prediction is off is written in a Rice code (R. F. Rice, "Some practical universal noiseless coding techniques", JPL
-Publication 79-22, 1979), which is short for small numbers. ``assets/jumps.js`` reads it; ``unpacked`` does the same.
-
-Columns of numbers as text that a browser reads without parsing: short, and any value can be read by itself.
-
-Rounding: how many digits of a number the page keeps.
+A jump is small enough that a page can hold one for every design of its fronts. Each of its columns is rounded to whole
+counts. Each count is predicted from those before it, and how far the prediction is off is written in a Rice code (R. F.
+Rice, "Some practical universal noiseless coding techniques", JPL Publication 79-22, 1979), which is short for small
+numbers. ``assets/jumps.js`` reads it; ``unpacked`` does the same.
 """
 
 import base64
@@ -44,15 +41,11 @@ _HEAD_BITS = 16  # of the numbers of a jump's lift-off step and last step
 _LONG, _LONG_BITS = 20, 28  # a code of so many ones is followed by the number itself, in so many bits
 _MOST_RICE = 12
 _FAR = 4  # a line is not drawn on over so many times the distance of the two points that it goes through
+DIGITS = 5  #: Significant digits of numbers on the page: more than any of them is good for.
 
 
 def packed(recordings: Mapping[int, Recording], frames: int) -> Jumps:
-    """The jumps as text.
-
-    Args:
-        recordings: by key, such as the number of a trial; each with ``frames`` frames, or fewer in a short jump.
-        frames: that they were made with.
-    """
+    """Return the jumps as text, by keys such as numbers of trials; each has ``frames`` frames, or fewer if short."""
     jumps = list(recordings.values())
     sizes = np.array([len(jump.steps) for jump in jumps], dtype=np.int64)
     step_s = jumps[0].step_s if jumps else 0.0
@@ -67,19 +60,12 @@ def packed(recordings: Mapping[int, Recording], frames: int) -> Jumps:
         columns.append(JumpColumn(name=name, count=size, predictor=predictor, rice=rice))
         codes.append(zigzag)
     ends = np.array([(jump.lift_off_step, int(jump.steps[-1])) for jump in jumps], dtype=np.int64).reshape(-1, 2)
-    lengths, data = _bytes(sizes, ends, codes, [column.rice for column in columns])
-    return Jumps(
-        keys=list(recordings),
-        lengths=lengths,
-        step_s=step_s,
-        frames=frames,
-        columns=columns,
-        data=base64.b64encode(data).decode("ascii"),
-    )
+    lengths, raw = _bytes(sizes, ends, codes, [column.rice for column in columns])
+    data = base64.b64encode(raw).decode("ascii")
+    return Jumps(keys=list(recordings), lengths=lengths, step_s=step_s, frames=frames, columns=columns, data=data)
 
 
 def _joined(columns: Sequence[NDArray[np.float64]], size: float) -> Ints:
-    """One column of all jumps in a row, in counts."""
     row = np.concatenate(columns) if columns else np.zeros(0)
     return np.asarray(np.floor(row / size + 0.5), dtype=np.int64)
 
@@ -109,43 +95,37 @@ class _Frames:
         return np.where(self.first | self.second | (self.since > _FAR * before), last, last + ahead)
 
     def integral(self, rate: Ints, factor: float) -> Ints:
-        """Rounded rise since the frame before of a column with this rate; ``factor`` is rate count over own count."""
+        """Return the rounded rise of a column since the frame before; ``factor`` is rate count over own count."""
         both = 0.5 * (np.roll(rate, 1) + rate) * factor
         return np.where(self.first, 0, np.floor(both * (self.since * self.step_s) + 0.5).astype(np.int64))
 
 
 def _shortest(counts: Ints, frame: _Frames, by: str | None, rise: Ints | None) -> tuple[str, int, Ints]:
-    """Predictor and Rice parameter that give the shortest text, and the codes."""
+    """Return predictor and Rice parameter that give the shortest text, and the codes."""
     guesses = {LAST: frame.last(counts), LINE: frame.line(counts)}
     if by is not None and rise is not None:
         guesses[by] = frame.last(counts) + rise
     found = []
     for predictor, guess in guesses.items():
-        codes = _zigzag(counts - guess)
+        off = counts - guess  # 0, -1, 1, -2, 2 ... become 0, 1, 2, 3, 4 ...
+        codes = np.where(off < 0, -2 * off - 1, 2 * off)
         found += [(int(_bits(codes, rice).sum()), predictor, rice, codes) for rice in range(_MOST_RICE + 1)]
     _, predictor, rice, codes = min(found, key=lambda entry: entry[0])
     return predictor, rice, codes
 
 
-def _zigzag(values: Ints) -> Ints:
-    """0, -1, 1, -2, 2 ... -> 0, 1, 2, 3, 4 ..."""
-    return np.where(values < 0, -2 * values - 1, 2 * values)
-
-
 def _bits(codes: Ints, rice: int | Ints) -> Ints:
-    """Length of each code in bits."""
     ones = codes >> rice
     return np.where(ones < _LONG, ones + 1 + rice, _LONG + _LONG_BITS)
 
 
 def _bytes(sizes: Ints, ends: Ints, codes: Sequence[Ints], rices: Sequence[int]) -> tuple[list[int], bytes]:
-    """Length of each jump in bytes, and all of them one after the other: its two ends, then column after column."""
+    """Return the length of each jump in bytes, and all jumps in a row: two ends each, then column after column."""
     n, width = len(sizes), len(codes)
     # The row of all numbers in the order of writing, sorted by jump, then column, then frame.
     owner = np.concatenate([np.repeat(np.arange(n), 2), *(np.repeat(np.arange(n), sizes) for _ in codes)])
-    column = np.concatenate(
-        [np.full(2 * n, -1), *(np.full(len(row), k) for k, row in enumerate(codes))], dtype=np.int64
-    )
+    columns = [np.full(2 * n, -1), *(np.full(len(row), k) for k, row in enumerate(codes))]
+    column = np.concatenate(columns, dtype=np.int64)
     number = np.concatenate([ends.ravel(), *codes])
     order = np.lexsort((column, owner))  # stable, so the frames keep their order
     owner, column, number = owner[order], column[order], number[order]
@@ -173,7 +153,7 @@ def _bytes(sizes: Ints, ends: Ints, codes: Sequence[Ints], rices: Sequence[int])
 
 
 def unpacked(jumps: Jumps, key: int) -> dict[str, NDArray[np.float64]]:
-    """``time_s`` and the columns of one jump in stored units, each of shape (frames,)."""
+    """Return ``time_s`` and the columns of one jump in stored units, each of shape (frames,)."""
     at = list(jumps.keys).index(key)
     start = sum(jumps.lengths[:at])
     data = base64.b64decode(jumps.data)[start : start + jumps.lengths[at]]
@@ -214,7 +194,7 @@ def _guess(
     i: int,
     step_s: float,
 ) -> int:
-    """The predicted count of frame ``i``, with steps of ``s`` seconds."""
+    """Return the predicted count of frame ``i``, with steps of ``s`` seconds."""
     if i == 0:
         return 0
     since = steps[i] - steps[i - 1]
@@ -231,7 +211,7 @@ def _guess(
 
 
 def lift_off_s(jumps: Jumps, key: int) -> float:
-    """Time of the last contact in one jump."""
+    """Return the time of the last contact in one jump."""
     at = list(jumps.keys).index(key)
     start = sum(jumps.lengths[:at])
     high, low = base64.b64decode(jumps.data)[start : start + 2]
@@ -239,11 +219,11 @@ def lift_off_s(jumps: Jumps, key: int) -> float:
 
 
 def packed_column(values: Any) -> str:
-    """Numbers, shape (n,), as four letters each: base64 of the upper three bytes of single precision, low byte first.
+    """Return numbers, shape (n,), as four letters each: base64 of the upper three bytes of single precision.
 
-    Three bytes keep 16 significant bits, so a value is off by at most 2^-16 of itself (1.5e-5), less than the rounding
-    of columns written as text. Three bytes are exactly four letters, so the value of a row can be read alone. What is
-    not finite, or beyond single precision, becomes not a number.
+    The low byte comes first. Three bytes keep 16 significant bits, so a value is off by at most 2^-16 of itself
+    (1.5e-5), less than the rounding of columns written as text. They are exactly four letters, so the value of a row
+    can be read alone. What is not finite, or beyond single precision, becomes not a number.
     """
     with np.errstate(over="ignore"):
         single = np.asarray(values, dtype=np.float64).astype("<f4")
@@ -255,19 +235,15 @@ def packed_column(values: Any) -> str:
 
 
 def unpacked_column(text: str) -> NDArray[np.float64]:
-    """The numbers of ``packed``, shape (n,); NaN where there is none."""
+    """Return the numbers of ``packed``, shape (n,); NaN where there is none."""
     upper = np.frombuffer(base64.b64decode(text), dtype=np.uint8).reshape(-1, 3)
     words = np.zeros((len(upper), 4), dtype=np.uint8)
     words[:, 1:] = upper
     return words.view("<f4")[:, 0].astype(np.float64)
 
 
-DIGITS = 5
-"""Significant digits of numbers on the page: more than any of them is good for."""
-
-
 def column(values: Any, digits: int = DIGITS) -> Column:
-    """Numbers, shape (n,), to ``digits`` significant digits; None where they are not finite."""
+    """Return numbers, shape (n,), to ``digits`` significant digits; None where they are not finite."""
     array = np.asarray(values, dtype=np.float64)
     finite = np.isfinite(array)
     exponent = np.zeros_like(array)
@@ -281,5 +257,5 @@ def column(values: Any, digits: int = DIGITS) -> Column:
 
 
 def number(value: float) -> Number:
-    """A number to four decimals, None if it is not finite."""
+    """Return a number to four decimals, None if it is not finite."""
     return round(float(value), 4) if np.isfinite(value) else None

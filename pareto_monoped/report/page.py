@@ -1,7 +1,4 @@
-"""Payload -> one self-contained HTML file.
-
-Studies -> what the page shows: a pure function of study data and what was simulated again for it.
-"""
+"""Studies -> what the page shows, a pure function of their data and of what was simulated again -> one HTML file."""
 
 import base64
 import hashlib
@@ -57,20 +54,21 @@ if TYPE_CHECKING:
 PUBLISHED_LINK_KG, PUBLISHED_LINK_KG_PER_M = 0.235, 0.828
 """Mass of a link over its length: straight line through the masses of links that the authors published, for lengths
 from 150 to 350 mm."""
+SCRIPTS = (
+    "dom", "data", "jumps", "state", "subject", "link", "scales", "marks", "plots", "chart", "space", "front", "axes",
+    "robust", "ask", "robot", "lines", "detail", "parallel", "table", "search", "viewer",
+    "shortlist", "compare", "print", "main",
+)  # fmt: skip
+"""The page's own scripts, in the order in which they run; together they are one closed scope."""
+STYLES = ("style", "choose", "print")  #: The page's style sheets, in the order in which they apply.
 
 
 def _origin(actuator_map: "ActuatorMap") -> tuple[Any, str]:
-    """What decides a map: the motor and the rules."""
     return actuator_map.motor, actuator_map.settings.rules
 
 
 def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) -> Payload:
-    """The page's content.
-
-    Args:
-        sources: one per database, in the order of the command line.
-        literal: the paper's cases under the ``paper`` calibration, as in ``jump.table1.Spread``.
-    """
+    """Return the page's content; ``literal`` are the paper's cases under its calibration (``jump.table1.Spread``)."""
     mapped: list[Any] = []
     places: list[MapPlace] = []
     gearboxes: list[Gearbox] = []
@@ -95,9 +93,8 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
     variables = [variable for variable in VARIABLES if variable.name in used]
     goals = tuple(dict.fromkeys(name for source in sources for name in source.data.study.objectives.names))
     cards = []
-    for source, label, most_rows in zip(
-        sources, labels, rows_per_study([len(source.data.trials) for source in sources]), strict=True
-    ):
+    shown = rows_per_study([len(source.data.trials) for source in sources])
+    for source, label, most_rows in zip(sources, labels, shown, strict=True):
         own = {name: mapped.index(_origin(one)) for name, one in source.data.actuator_maps.items()}
         ends = {kit.label: (own[kit.hip.motor.name], own[kit.knee.motor.name]) for kit in source.data.kits}
         numbers = {label: list(kits).index(pair) for label, pair in ends.items()}
@@ -141,7 +138,7 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
 
 
 def _axes(cards: Sequence[StudyCard]) -> list[str]:
-    """The measures and variables that trials differ in."""
+    """Return the measures and variables that trials differ in."""
     differ = set()
     for card in cards:
         for name, values in card.trials.columns.items():
@@ -153,10 +150,7 @@ def _axes(cards: Sequence[StudyCard]) -> list[str]:
 
 
 def _labels(sources: Sequence[Source]) -> list[str]:
-    """Names of the studies; where several have the same, with what they are for, seed, database or number.
-
-    Each is as long as it must be, so that no two are alike.
-    """
+    """Return the studies' names; equal ones get what they are for, seed, database or number, as far as needed."""
     names = [source.data.study.name for source in sources]
     if len({source.data.study.objectives for source in sources}) > 1:
         names = [f"{name} by {_aim(source)}" for source, name in zip(sources, names, strict=True)]
@@ -169,37 +163,21 @@ def _labels(sources: Sequence[Source]) -> list[str]:
 
 
 def _title(cards: Sequence[StudyCard]) -> str:
-    """The study's name, where it is one study, or one by several objectives; else the first one's and a count."""
+    """Return the study's name, where it is one, or one by several objectives; else the first one's and a count."""
     by = {(card.name, tuple(card.objectives)) for card in cards}
     one = len({card.name for card in cards}) == 1 and len(by) == len(cards)
     return cards[0].name if one else f"{cards[0].name} and {len(cards) - 1} more"
 
 
 def _aim(source: Source) -> str:
-    """The objectives of a study but the height, in words."""
     measures = source.data.study.objectives.measures
     return " and ".join(WORDS.get(entry.name, entry.label) for entry in measures if entry.name != "height_m")
 
 
-SCRIPTS = (
-    "dom", "data", "jumps", "state", "subject", "link", "scales", "marks", "plots", "chart", "space", "front", "axes",
-    "robust", "ask", "robot", "lines", "detail", "parallel", "table", "search", "viewer",
-    "shortlist", "compare", "print", "main",
-)  # fmt: skip
-"""The page's own scripts, in the order in which they run; together they are one closed scope."""
-
-
-STYLES = ("style", "choose", "print")
-"""The page's style sheets, in the order in which they apply."""
-
-
 def write_report(dbs: Sequence[StudyPlace], out: Path, *, exports: Path | None = None) -> None:
-    """Write the report of one or several studies.
+    """Write the report of one or several studies, which are then drawn over each other and compared.
 
-    Args:
-        dbs: study databases; several are drawn over each other and compared.
-        out: the HTML file.
-        exports: folder that holds a folder ``trial_N`` per exported design, for the 3D view.
+    Designs of which ``exports`` holds a folder ``trial_N`` have a 3D view.
 
     Raises:
         DatabaseError: a database that is missing, damaged, or no study.
@@ -216,17 +194,7 @@ def payload_of(
     most_jumps: int | None = None,
     note: Callable[[str], None] = lambda _: None,
 ) -> Payload:
-    """Read the studies and simulate what the page shows beyond them.
-
-    Args:
-        dbs: study databases.
-        exports: as for ``write_report``.
-        most_jumps: how many designs of each front jump on the page; None: all of them.
-        note: hears of exports that are left out.
-
-    Raises:
-        DatabaseError, StudyError: as ``write_report``.
-    """
+    """Read the studies, simulate at most ``most_jumps`` of each front for the page; raise as ``write_report``."""
     if not dbs:
         raise StudyError("databases = 0: must be at least 1; name the database of a study")
     # Everything is read before anything is simulated, so that a wrong name is reported at once.
@@ -251,7 +219,7 @@ def payload_of(
 
 @lru_cache(maxsize=1)
 def literal_cases() -> tuple[dict[str, float | None], ...]:
-    """Medians and spread of the paper's cases with the paper's motor under the ``paper`` calibration."""
+    """Return medians and spread of the paper's cases with the paper's motor under the ``paper`` calibration."""
     from pareto_monoped.actuator.search import map_for
     from pareto_monoped.jump.calibration import load_calibration
     from pareto_monoped.jump.table1 import paper_spreads
@@ -261,7 +229,7 @@ def literal_cases() -> tuple[dict[str, float | None], ...]:
 
 
 def page(payload: Payload) -> str:
-    """The whole HTML text."""
+    """Return the whole HTML text."""
     script = "(() => {\n'use strict';\n" + "\n".join(asset(f"{name}.js") for name in SCRIPTS) + "\n})();\n"
     # Only this script may run, whatever else gets into the page, and nothing may be loaded.
     policy = (
@@ -283,18 +251,13 @@ def page(payload: Payload) -> str:
         context=context_section(payload),
         provenance=provenance_tables(payload),
         version=safe(payload.version),
-        payload=embedded(payload),
+        payload=embedded_json(payload),
         script=script,
     )
 
 
-def embedded(payload: Payload) -> str:
-    """The payload as JSON for a script element."""
-    return embedded_json(payload)
-
-
 def embedded_json(values: Any) -> str:
-    """JSON for a script element: without ``<``, it can neither end the element nor begin a comment."""
+    """Return JSON for a script element: without ``<``, it can neither end the element nor begin a comment."""
     text = json.dumps(values, default=_plain, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
@@ -306,10 +269,10 @@ def _plain(value: Any) -> Any:
 
 
 def fingerprint(script: str) -> str:
-    """What a page's policy calls the one script that may run."""
+    """Return what a page's policy calls the one script that may run."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode('utf-8')).digest()).decode('ascii')}'"
 
 
 def asset(name: str) -> str:
-    """The text of a script, style sheet or page of the report."""
+    """Return the text of a script, style sheet or page of the report."""
     return (resources.files("pareto_monoped.report") / "assets" / name).read_text(encoding="utf-8")

@@ -29,7 +29,7 @@ _BYTES, _BYTES_PER_FRAME = 130.0, 3.7
 
 
 def frames_for(jumps: int) -> int:
-    """Moments of each jump on a page of so many: fewer for many, so that the page stays small."""
+    """Return how many moments of each jump a page has: fewer where there are many jumps, so that it stays small."""
     room = JUMPS_BYTES / max(jumps, 1)
     return int(np.clip((room - _BYTES) / _BYTES_PER_FRAME, LEAST_FRAMES, MOST_FRAMES))
 
@@ -48,26 +48,19 @@ class Resimulation:
 def resimulate(
     data: StudyData, *, most_jumps: int | None = None, frames: int = MOST_FRAMES, workers: int = 1
 ) -> Resimulation:
-    """Simulate what the page shows of a study beyond its database.
-
-    Args:
-        data: the study.
-        most_jumps: how many designs of the front jump, spread evenly over it and the knee besides; None: all of them.
-        frames: of each jump, see ``frames_for``.
-        workers: threads that simulate.
-    """
+    """Simulate the front's jumps, or at most ``most_jumps`` spread evenly and the knee, and the paper's designs."""
     front = data.front()
     rows = front if most_jumps is None else front.iloc[_chosen(front, data, most_jumps)]
     jumps: dict[int, Recording] = {}
     for kit, places in data.kit_rows(rows):
         members = rows.iloc[places]
         made = jumps_of(members[list(NAMES)].to_numpy(dtype=np.float64), kit, data.calibration, frames, workers)
-        numbers = members["trial"].astype(int).tolist()
-        jumps |= {trial: jump for trial, jump in zip(numbers, made, strict=True) if jump is not None}
-    heights = zip(rows["trial"].astype(int).tolist(), rows["height_m"].tolist(), strict=True)
+        jumps |= of_trials(members, made)
+    numbers = rows["trial"].astype(int).tolist()
+    heights = zip(numbers, rows["height_m"].tolist(), strict=True)
     cases, case_jumps = paper_cases(data.case_kit, data.calibration)
     return Resimulation(
-        jumps={trial: jumps[trial] for trial in rows["trial"].astype(int).tolist() if trial in jumps},
+        jumps={trial: jumps[trial] for trial in numbers if trial in jumps},
         cases=cases,
         case_jumps=case_jumps,
         frames=frames,
@@ -76,12 +69,18 @@ def resimulate(
     )
 
 
+def of_trials(trials: pd.DataFrame, made: "Sequence[Recording | None]") -> "dict[int, Recording]":
+    """Return the jumps of some trials by their numbers, without those that have none."""
+    numbers = trials["trial"].astype(int).tolist()
+    return {trial: jump for trial, jump in zip(numbers, made, strict=True) if jump is not None}
+
+
 def _height_m(jumps: Mapping[int, "Recording"], trial: int) -> float:
     return jumps[trial].height_m if trial in jumps else 0.0
 
 
 def _chosen(front: pd.DataFrame, data: StudyData, most: int) -> list[int]:
-    """Positions on the front of at most ``most`` designs spread evenly over it, and of the knee."""
+    """Return positions on the front of at most ``most`` designs spread evenly over it, and of the knee."""
     from pareto_monoped.pareto.pick import pick
     from pareto_monoped.pareto.selectors import Knee
 
@@ -93,14 +92,14 @@ def _chosen(front: pd.DataFrame, data: StudyData, most: int) -> list[int]:
 
 
 def _spread(n: int, most: int) -> list[int]:
-    """At most ``most`` positions spread evenly over ``n``, both ends among them."""
+    """Return at most ``most`` positions spread evenly over ``n``, both ends among them."""
     return sorted(set(np.linspace(0, n - 1, min(n, most)).round().astype(int).tolist())) if n else []
 
 
 def jumps_of(
     designs: NDArray[np.float64], maps: "Maps", calibration: "Calibration", frames: int = MOST_FRAMES, workers: int = 1
 ) -> "list[Recording | None]":
-    """Jumps of designs that can stand, shape (n, number of variables), each in a few frames; None without an apex."""
+    """Return jumps of designs that can stand, shape (n, variables), each in a few frames; None without an apex."""
     from pareto_monoped.jump.frames import recordings
     from pareto_monoped.robot.population import robot_arrays
 
@@ -111,7 +110,7 @@ def jumps_of(
 
 
 def paper_cases(maps: "Maps", calibration: "Calibration") -> "tuple[list[Case], dict[int, Recording]]":
-    """The paper's designs, simulated, and the jumps of those that jump, by place among them."""
+    """Return the paper's designs, simulated, and the jumps of those that jump, by place among them."""
     from pareto_monoped.jump.evaluate import Evaluator
 
     designs = np.array([case.design.as_array() for case in PAPER_CASES.values()])

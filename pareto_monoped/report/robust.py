@@ -19,13 +19,7 @@ MOST_ALTERNATIVES = 5
 
 
 def robust_of(data: StudyData, stored: Mapping[int, Stored], row_of: Mapping[int, int]) -> Robust | None:
-    """The designs of a study under uncertainty; None where nothing of the kind is stored.
-
-    Args:
-        data: the study.
-        stored: robustness of some of its trials.
-        row_of: trial -> its row on the page; trials without one are left out.
-    """
+    """Return a study's designs under uncertainty that are in ``row_of``: trial -> row; None without any stored."""
     if not stored:
         return None
     trials = robust_trials(data, stored)
@@ -34,8 +28,7 @@ def robust_of(data: StudyData, stored: Mapping[int, Stored], row_of: Mapping[int
         front = robust_front(data, trials)["trial"].tolist()
     except SelectionError:
         front = []
-    settings = trials.settings
-    ranges = settings.get("uncertainty")
+    settings, ranges = trials.settings, trials.settings.get("uncertainty")
     return Robust(
         ranges=str(ranges.get("name", "")) if isinstance(ranges, Mapping) else "",
         samples=int(str(settings.get("samples", 0))),
@@ -48,7 +41,7 @@ def robust_of(data: StudyData, stored: Mapping[int, Stored], row_of: Mapping[int
 
 
 def names_of(studies: Sequence[StudyData], robust: Sequence[Robust | None]) -> tuple[str, ...]:
-    """What some study on the page has beside its jumps' measures: those under uncertainty, then own functions."""
+    """Return what some study has beside its jumps' measures: those under uncertainty, then own functions."""
     there = {name for data in studies for name in data.trials if is_robust(name)}
     there.update(name for one in robust if one is not None for name in one.packed)
     own = dict.fromkeys(name for data in studies for name in data.trials if is_own(name))
@@ -56,7 +49,7 @@ def names_of(studies: Sequence[StudyData], robust: Sequence[Robust | None]) -> t
 
 
 def alternatives_of(data: StudyData, trial: int, row_of: Mapping[int, int]) -> tuple[OtherDesign, ...]:
-    """Quite different designs that cost about as much as one of a study's, as far as they are on the page."""
+    """Return quite different designs on the page that cost about as much as one of a study's."""
     found = alternatives(data, trial, count=MOST_ALTERNATIVES)
     return tuple(
         OtherDesign(row=row_of[one.trial], price=round(one.price, 5), text=one.text(), audited=one.audited)
@@ -66,7 +59,7 @@ def alternatives_of(data: StudyData, trial: int, row_of: Mapping[int, int]) -> t
 
 
 def influences_of(stored: Mapping[tuple[int, About], StoredSensitivity]) -> dict[str, dict[str, Influences]]:
-    """The stored sensitivities of a study by trial number and kind of factors."""
+    """Return the stored sensitivities of a study by trial number and kind of factors."""
     found: dict[str, dict[str, Influences]] = {}
     for (trial, about), one in stored.items():
         factors = one.result.factors

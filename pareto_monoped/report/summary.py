@@ -1,7 +1,4 @@
-"""The sentences at the head of the page.
-
-Where a study's numbers come from: versions, settings and the command that runs it again.
-"""
+"""The sentences at the head of the page, and where a study's numbers come from: versions, settings, command."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -20,10 +17,12 @@ if TYPE_CHECKING:
     from pareto_monoped.report.resimulation import Resimulation
 
 _DRIFT_M = 0.001  # our own choice: the last digit in which the page shows a height
+_ABOVE = ("name", "description", "seed", "motor", "hip_motor", "knee_motor", "calibration")
+"""Settings that stand in the first rows of the table or elsewhere on the page."""
 
 
 def sentences(data: StudyData, front: pd.DataFrame, cases: Sequence[Case]) -> list[str]:
-    """What the front achieves: the energy that the headline height costs, and a comparison with the paper's Case C."""
+    """Return what the front achieves: what the headline height costs, and a comparison with the paper's Case C."""
     done = len(data.trials)
     if done == 0:
         return ["No design has been simulated yet: run or resume the study, then make the report again."]
@@ -49,7 +48,7 @@ def sentences(data: StudyData, front: pd.DataFrame, cases: Sequence[Case]) -> li
 
 
 def _extent(front: pd.DataFrame, objectives: Objectives) -> str:
-    """What a height costs, where the height is an objective, and how far the front reaches in every objective."""
+    """Return what a height costs, where it is an objective, and how far the front reaches in every objective."""
     values = front[list(objectives.names)].to_numpy(dtype=float)
     ranges = [
         f"{entry.words} ({entry.text(column.min())} to {entry.text(column.max())})"
@@ -73,7 +72,7 @@ def _price(front: pd.DataFrame, height_m: float) -> str:
 
 
 def _against_paper(front: pd.DataFrame, cases: Sequence[Case]) -> list[str]:
-    """The paper's Case C, published and simulated here, compared with the front at the height that it reaches here."""
+    """Return the paper's Case C, published and simulated here, against the front at the height that it reaches here."""
     here = next((case for case in cases if case.name == "C"), None)
     published = PAPER_CASES["C"]
     if here is None:
@@ -92,7 +91,7 @@ def _against_paper(front: pd.DataFrame, cases: Sequence[Case]) -> list[str]:
 
 
 def notes(data: StudyData, again: "Resimulation") -> list[str]:
-    """What the reader has to know before using the page."""
+    """Return what the reader has to know before using the page."""
     lines = []
     done, budget = len(data.trials), data.meta.budget
     if not data.meta.finished:
@@ -117,12 +116,8 @@ def notes(data: StudyData, again: "Resimulation") -> list[str]:
     return lines
 
 
-_ABOVE = ("name", "description", "seed", "motor", "hip_motor", "knee_motor", "calibration")
-"""Settings that stand in the first rows of the table or elsewhere on the page."""
-
-
 def provenance(data: StudyData) -> list[list[str]]:
-    """Rows of name and value: the study, the versions and machine it ran on, and every setting."""
+    """Return rows of name and value: the study, the versions and machine it ran on, and every setting."""
     meta, study = data.meta, data.study
     rows = [
         ("study", study.name),
@@ -142,7 +137,7 @@ def provenance(data: StudyData) -> list[list[str]]:
 
 
 def _flat(values: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str]]:
-    """Nested settings as rows of ``table.key`` and value."""
+    """Return nested settings as rows of ``table.key`` and value."""
     rows: list[tuple[str, str]] = []
     for key, value in values.items():
         if isinstance(value, Mapping):
@@ -153,5 +148,5 @@ def _flat(values: Mapping[str, Any], prefix: str = "") -> list[tuple[str, str]]:
 
 
 def command(data: StudyData) -> str:
-    """The command that runs the study again from its study file."""
+    """Return the command that runs the study again from its study file."""
     return f"pareto-monoped run STUDY.toml --seed {data.study.seed} --evaluations {data.meta.budget}"

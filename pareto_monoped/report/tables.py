@@ -1,8 +1,7 @@
 """The page's text and tables, which are painted before any script runs. Every text from a study is escaped here.
 
-The plain table of the fronts' designs, which is on the page without scripts and in print.
-
-The page's words that depend on the objectives: what it is about, and the questions that the front answers.
+The plain table of the fronts' designs is on the page without scripts and in print. Some words depend on the objectives:
+what the page is about, and the questions that the front answers.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,14 +16,17 @@ from pareto_monoped.report.packing import unpacked_column
 from pareto_monoped.report.quantities import LEADING, label_of
 from pareto_monoped.report.schema import Comparison, Number, Payload, Quantity, StudyCard
 
+MOST_ROWS = 60
+"""Designs per study in the plain table: two printed pages. Our own choice; the interactive table has all."""
+
 
 def safe(value: object) -> str:
-    """Text for HTML, inside an element or a quoted attribute."""
+    """Return text for HTML, inside an element or a quoted attribute."""
     return escape(str(value), quote=True)
 
 
 def head(payload: Payload) -> str:
-    """Summary and key facts of each study."""
+    """Return summary and key facts of each study."""
     if len(payload.studies) == 1:
         (card,) = payload.studies
         about = f'<p class="small">{safe(card.description)}</p>' if card.description else ""
@@ -60,10 +62,7 @@ def _facts(card: StudyCard) -> list[tuple[str, str]]:
         ("evaluations", done),
         ("of these", states),
         ("run time", _duration(card.seconds)),
-        (
-            "hypervolume",
-            f"{card.hypervolume:.3f} {card.hypervolume_unit} from {card.reference}",
-        ),
+        ("hypervolume", f"{card.hypervolume:.3f} {card.hypervolume_unit} from {card.reference}"),
     ]
 
 
@@ -80,30 +79,23 @@ def _number(value: Number, decimals: int) -> str:
 
 
 def html_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, caption: str = "", scroll: bool = True) -> str:
-    """An HTML table; the first cell of each row is its heading."""
+    """Return an HTML table; the first cell of each row is its heading."""
     first, *others = (safe(name) for name in columns)
     top = f'<th scope="col">{first}</th>' + "".join(f'<th scope="col" class="n">{name}</th>' for name in others)
-    body = "".join(
-        f'<tr><th scope="row">{safe(cells[0])}</th>'
-        + "".join(f'<td class="n">{safe(c)}</td>' for c in cells[1:])
-        + "</tr>"
-        for cells in rows
-    )
+    body = ""
+    for heading, *cells in rows:
+        values = "".join(f'<td class="n">{safe(cell)}</td>' for cell in cells)
+        body += f'<tr><th scope="row">{safe(heading)}</th>{values}</tr>'
     words = f"<caption>{safe(caption)}</caption>" if caption else ""
     table = f"<table>{words}<thead><tr>{top}</tr></thead><tbody>{body}</tbody></table>"
     return f'<div class="scroll" tabindex="0">{table}</div>' if scroll else table
 
 
 def cases_table(payload: Payload) -> str:
-    """The paper's designs, and their heights and energies as published and as simulated here."""
-    columns = [
-        "design",
-        *(f"{v['symbol']}, {v['unit']}" if v["unit"] != "1" else v["symbol"] for v in payload.variables),
-    ]
-    designs = [
-        [_case_name(case["name"]), *(f"{value:g}" for value in case["design"].values())] for case in payload.published
-    ]
-    parts = [html_table(columns, designs, caption="The paper's designs (Table I)."), "<p></p>"]
+    """Return the paper's designs, and their heights and energies as published and as simulated here."""
+    heads = (f"{v['symbol']}, {v['unit']}" if v["unit"] != "1" else v["symbol"] for v in payload.variables)
+    designs = [[_case_name(c["name"]), *(f"{value:g}" for value in c["design"].values())] for c in payload.published]
+    parts = [html_table(["design", *heads], designs, caption="The paper's designs (Table I)."), "<p></p>"]
     # Studies with the same motor and calibration share a column: their cases are the same.
     cards = list({(card.case_motor, card.calibration): card for card in payload.studies}.values())
     names = ["height, m", "as published"]
@@ -145,13 +137,13 @@ def _case_name(name: str) -> str:
 
 
 def published_link(payload: Payload) -> str:
-    """Mass of the published link over its length in mm."""
+    """Return the mass of the published link over its length in mm."""
     line = payload.constants
     return f"{line.published_link_kg:g} kg + {line.published_link_kg_per_m:g} g/mm"
 
 
 def comparison_tables(payload: Payload) -> str:
-    """Several studies side by side; an empty text for a single one."""
+    """Return several studies side by side; an empty text for a single one."""
     comparison = payload.comparison
     if comparison is None:
         return ""
@@ -159,17 +151,11 @@ def comparison_tables(payload: Payload) -> str:
     other = measure(comparison.other)
     columns += [f"hypervolume, {comparison.hypervolume_unit}"]
     columns += [f"{other.unit} at {height:g} m" for height in comparison.heights_m]
-    rows = [
-        [
-            *(
-                f"{row[name]}"
-                for name in ("label", "motor", "calibration", "algorithm", "seed", "evaluations", "front")
-            ),
-            _number(row["hypervolume"], 3),
-            *(_number(value, 2) for value in row["at_height"]),
-        ]
-        for row in comparison.rows
-    ]
+    names = ("label", "motor", "calibration", "algorithm", "seed", "evaluations", "front")
+    rows = []
+    for row in comparison.rows:
+        at_height = (_number(value, 2) for value in row["at_height"])
+        rows.append([*(f"{row[name]}" for name in names), _number(row["hypervolume"], 3), *at_height])
     caption = (
         f"All hypervolumes are measured from {comparison.reference}, the first study's reference point. "
         f"{other.unit} at a height: {other.label}, the best on the front for at least that height."
@@ -179,7 +165,7 @@ def comparison_tables(payload: Payload) -> str:
 
 
 def _choices_table(comparison: Comparison) -> str:
-    """What choosing by mechanical energy costs at the battery; an empty text if the studies are not two such fronts."""
+    """Return what choosing by mechanical energy costs at the battery; '' if the studies are not two such fronts."""
     if not comparison.choices:
         return ""
     found = [side for row in comparison.choices for side in (row["mechanical"], row["battery"]) if side is not None]
@@ -192,10 +178,8 @@ def _choices_table(comparison: Comparison) -> str:
     body = ""
     for row in comparison.choices:
         cost = "-" if row["cost"] is None else f"{100.0 * row['cost']:+.1f} %"
-        cells = "".join(
-            f'<td class="n">{safe(c)}</td>'
-            for c in (*_choice(row["mechanical"], names), *_choice(row["battery"], names), cost)
-        )
+        values = (*_choice(row["mechanical"], names), *_choice(row["battery"], names), cost)
+        cells = "".join(f'<td class="n">{safe(value)}</td>' for value in values)
         body += f'<tr><th scope="row">{row["height_m"]:.1f} m</th>{cells}</tr>'
     caption = (
         "For each height, the designs of least energy on either front with the ratios of their gearboxes, and what "
@@ -213,7 +197,7 @@ def _choice(chosen: Mapping[str, Any] | None, names: Sequence[str]) -> list[str]
 
 
 def provenance_tables(payload: Payload) -> str:
-    """Versions and settings of each study, and the command that runs it again."""
+    """Return versions and settings of each study, and the command that runs it again."""
     parts = []
     for card in payload.studies:
         rows = "".join(
@@ -228,57 +212,8 @@ def provenance_tables(payload: Payload) -> str:
     return "\n".join(parts)
 
 
-MOST_ROWS = 60
-"""Designs per study in the plain table: two printed pages. Our own choice; the interactive table has all."""
-
-
-def designs_table(payload: Payload) -> str:
-    """One table per study with a front: its designs, or some evenly along it."""
-    names = dict.fromkeys((*payload.goals, *LEADING, *(str(variable["name"]) for variable in payload.variables)))
-    quantities = {q.name: q for q in payload.quantities}
-    parts = []
-    for card in payload.studies:
-        if not card.front:
-            continue
-        there = [name for name in names if name in card.trials.columns or name in card.trials.packed]
-        columns = {name: _values(card, name) for name in there}
-        rows = evenly(card.front, MOST_ROWS)
-        cells = [
-            [f"{card.trials.trial[row]}", *(_text(columns[name][row], quantities[name]) for name in there)]
-            for row in rows
-        ]
-        heads = ["trial", *(_title(quantities[name]) for name in there)]
-        whole = len(rows) == len(card.front)
-        count = f"All {len(rows)} designs" if whole else f"{len(rows)} of {len(card.front)} designs"
-        caption = f"{card.label}: {count} of the front{'' if whole else ', evenly along it'}."
-        parts.append(html_table(heads, cells, caption=caption))
-    return "\n".join(parts) or '<p class="small">There is no front yet.</p>'
-
-
-def _title(quantity: Quantity) -> str:
-    return quantity.label if quantity.unit in ("1", ": 1") else f"{quantity.label}, {quantity.unit}"
-
-
-def evenly(front: Sequence[int], most: int) -> list[int]:
-    """At most ``most`` of the rows, with both ends, evenly along their order."""
-    if len(front) <= most:
-        return list(front)
-    return [front[i] for i in np.linspace(0, len(front) - 1, most).round().astype(int)]
-
-
-def _values(card: StudyCard, name: str) -> Sequence[Number]:
-    columns = card.trials.columns
-    return columns[name] if name in columns else unpacked_column(card.trials.packed[name]).tolist()
-
-
-def _text(value: Number, quantity: Quantity) -> str:
-    if value is None or not np.isfinite(value):
-        return "\N{EN DASH}"
-    return f"{value * quantity.scale:.{quantity.decimals}f}"
-
-
 def kind(payload: Payload) -> str:
-    """What the page is about, in one line above its title."""
+    """Return what the page is about, in one line above its title."""
     if tuple(payload.objectives) == ("height_m", "energy_j"):
         return "Pareto report: jump height against energy of a monoped"
     labels = [measure(name).label for name in payload.objectives]
@@ -286,7 +221,7 @@ def kind(payload: Payload) -> str:
 
 
 def order(payload: Payload) -> str:
-    """The order of the designs on the front, for readers who hear the page."""
+    """Return the order of the designs on the front, for readers who hear the page."""
     first = payload.objectives[0]
     if first == "height_m":
         return "Designs on the front, from the lowest jump to the highest"
@@ -294,7 +229,7 @@ def order(payload: Payload) -> str:
 
 
 def ask_fields(payload: Payload) -> str:
-    """The number fields of the form: the first objective wanted, and what may be spent for it."""
+    """Return the number fields of the form: the first objective wanted, and what may be spent for it."""
     there = {name for card in payload.studies for name in (*card.trials.columns, *card.trials.packed)}
     names = dict.fromkeys((*payload.objectives[:2], *(name for name in LEADING if name in there)))
     ids = ("ask-height", "ask-energy")
@@ -309,3 +244,47 @@ def _field(name: str, entry: Measure) -> str:
         f' <span class="field"><input id="{name}" data-ask="{entry.name}" type="number" step="any" inputmode="decimal">'
         f"<i>{safe(entry.shown_unit)}</i></span></label>"
     )
+
+
+def designs_table(payload: Payload) -> str:
+    """Return one table per study with a front: its designs, or some evenly along it."""
+    names = dict.fromkeys((*payload.goals, *LEADING, *(str(variable["name"]) for variable in payload.variables)))
+    quantities = {q.name: q for q in payload.quantities}
+    parts = []
+    for card in payload.studies:
+        if not card.front:
+            continue
+        there = [name for name in names if name in card.trials.columns or name in card.trials.packed]
+        columns = {name: _values(card, name) for name in there}
+        rows = evenly(card.front, MOST_ROWS)
+        cells = [
+            [f"{card.trials.trial[k]}", *(_text(columns[name][k], quantities[name]) for name in there)] for k in rows
+        ]
+        heads = ["trial", *(_title(quantities[name]) for name in there)]
+        whole = len(rows) == len(card.front)
+        count = f"All {len(rows)} designs" if whole else f"{len(rows)} of {len(card.front)} designs"
+        caption = f"{card.label}: {count} of the front{'' if whole else ', evenly along it'}."
+        parts.append(html_table(heads, cells, caption=caption))
+    return "\n".join(parts) or '<p class="small">There is no front yet.</p>'
+
+
+def _title(quantity: Quantity) -> str:
+    return quantity.label if quantity.unit in ("1", ": 1") else f"{quantity.label}, {quantity.unit}"
+
+
+def evenly(front: Sequence[int], most: int) -> list[int]:
+    """Return at most ``most`` of the rows, with both ends, evenly along their order."""
+    if len(front) <= most:
+        return list(front)
+    return [front[i] for i in np.linspace(0, len(front) - 1, most).round().astype(int)]
+
+
+def _values(card: StudyCard, name: str) -> Sequence[Number]:
+    columns = card.trials.columns
+    return columns[name] if name in columns else unpacked_column(card.trials.packed[name]).tolist()
+
+
+def _text(value: Number, quantity: Quantity) -> str:
+    if value is None or not np.isfinite(value):
+        return "\N{EN DASH}"
+    return f"{value * quantity.scale:.{quantity.decimals}f}"

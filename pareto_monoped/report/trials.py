@@ -21,13 +21,13 @@ _HISTORY_POINTS = 300  # of a convergence curve
 
 
 def rows_per_study(sizes: Sequence[int]) -> list[int]:
-    """How many rows each study gets: all of them, or a share of ``MOST_ROWS`` in proportion to its trials."""
+    """Return how many rows each study gets: all of them, or a share of ``MOST_ROWS`` in proportion to its trials."""
     total = sum(sizes)
     return [size if total <= MOST_ROWS else max(size * MOST_ROWS // total, 1) for size in sizes]
 
 
 def thinned(trials: pd.DataFrame, always: NDArray[np.bool_], most: int) -> pd.DataFrame:
-    """At most ``most`` rows: those at the mask ``always``, however many, and others spread evenly."""
+    """Return at most ``most`` rows: those at the mask ``always``, however many, and others spread evenly."""
     if len(trials) <= most:
         return trials.reset_index(drop=True)
     others = np.flatnonzero(~always)
@@ -44,15 +44,7 @@ def trial_columns(
     variables: Sequence[Variable],
     goals: Sequence[str] = (),
 ) -> Trials:
-    """The trials on the page.
-
-    Args:
-        trials: one row per trial.
-        numbers: more columns: where the page has what the trial chooses, such as its gearboxes.
-        total: trials in the database.
-        variables: those that the page shows.
-        goals: measures that are objectives of a study on the page.
-    """
+    """Return the trials on the page, out of ``total``; ``numbers`` are more columns, such as numbers of gearboxes."""
     names = dict.fromkeys((*(variable.name for variable in variables), "height_m", "energy_j", *goals, *EVERY_TRIAL))
     columns: dict[str, Column] = {name: column(values_of(trials, name)) for name in names}
     columns |= numbers
@@ -68,26 +60,19 @@ def trial_columns(
 
 
 def values_of(trials: pd.DataFrame, name: str) -> NDArray[np.float64]:
-    """A column of the trials, shape (n,); NaN for an objective that only another study on the page has."""
+    """Return a column of the trials, shape (n,); NaN for an objective that only another study on the page has."""
     return trials[name].to_numpy(dtype=np.float64) if name in trials else np.full(len(trials), np.nan)
 
 
-def front_columns(bodies_kg: NDArray[np.float64]) -> dict[str, Column]:
-    """What the page has of the front alone: the masses of base, thigh and shank, shape (n, 3)."""
-    return {f"{body}_kg": column(bodies_kg[:, i]) for i, body in enumerate(("base", "thigh", "shank"))}
-
-
 def audit_records(audits: pd.DataFrame) -> dict[str, dict[str, Any]]:
-    """Measures, verdict and reason of each audit, by trial number; without the measures that an audit has not."""
+    """Return measures, verdict and reason of each audit, by trial number; without measures that an audit has not."""
     names = [name for name in AUDIT if name in audits.columns]
     # An infinite change (the perturbed design did not jump) becomes None; the reason says it in words.
     values = {name: column(audits[name]) for name in names}
     there = {name: audits[name].notna().to_numpy() for name in names}
     reasons = audits["reason"].tolist() if "reason" in audits.columns else [""] * len(audits)
-    verdicts = [
-        {"good": bool(good), "reason": str(reason)}
-        for good, reason in zip(audits["well_conditioned"], reasons, strict=True)
-    ]
+    good = zip(audits["well_conditioned"], reasons, strict=True)
+    verdicts = [{"good": bool(is_good), "reason": str(reason)} for is_good, reason in good]
     return {
         str(int(trial)): {name: values[name][i] for name in names if there[name][i]} | verdicts[i]
         for i, trial in enumerate(audits["trial"])
@@ -95,9 +80,7 @@ def audit_records(audits: pd.DataFrame) -> dict[str, dict[str, Any]]:
 
 
 def history_columns(history: pd.DataFrame) -> dict[str, Column]:
-    """Hypervolume over evaluations, at no more points than a chart can show."""
+    """Return hypervolume over evaluations, at no more points than a chart can show."""
     rows = np.unique(np.linspace(0, len(history) - 1, min(len(history), _HISTORY_POINTS)).astype(int))
-    return {
-        name: column(history[name].to_numpy()[rows], 6) if len(history) else []
-        for name in ("evaluations", "hypervolume")
-    }
+    names = ("evaluations", "hypervolume")
+    return {name: column(history[name].to_numpy()[rows], 6) if len(history) else [] for name in names}

@@ -11,7 +11,7 @@ from pareto_monoped.analysis.robustness import robust, robust_front, robust_tria
 from pareto_monoped.analysis.sensitivity import sensitivity
 from pareto_monoped.measures import ROBUST_NAMES
 from pareto_monoped.report.card import Source
-from pareto_monoped.report.page import build, embedded, page
+from pareto_monoped.report.page import build, embedded_json, page
 from pareto_monoped.storage.extra_rows import read_robustness, read_sensitivity
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.uncertainty.settings import load_uncertainty
@@ -120,7 +120,7 @@ def test_the_scripts_read_the_same_numbers(shown, stored, browser):
                 const single = page.studies[0].trials.trial.map((_, row) => found.valueAt(0, "height_m.p05", row));
                 return [[...found.columnOf(0, "height_m.p05")], single, found.knownNames()];
             }""",
-            [(ASSETS / "data.js").read_text(encoding="utf-8"), embedded(shown)],
+            [(ASSETS / "data.js").read_text(encoding="utf-8"), embedded_json(shown)],
         )
     finally:
         tab.close()

@@ -1,12 +1,8 @@
-"""The leg moves freely through the working ranges of hip and knee, and meets its end stops at their ends.
-
-Beyond either end of its range a joint turns on by the travel of its stop, where only a bumper may be met: it is soft,
-and drawn as it was before.
+"""The leg moves freely through its working ranges, its end stops meet at their ends, and its gears mesh.
 
 Joints turn about parallel axes. Two parts can therefore only meet if their extents along the axis overlap and so do
-their distances from the joint's axis; pairs that can meet are intersected at steps through the joint's range.
-
-Sun, planets and ring mesh without overlap while the sun turns by one tooth; then all repeats.
+their distances from the joint's axis; pairs that can meet are intersected at steps through the joint's range. Beyond
+either end a joint turns on by the travel of its stop, where only a bumper may be met: it is soft, and drawn unsqueezed.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -38,7 +34,9 @@ _EXACT_RAD = np.radians(0.01)
 _NEVER_DEG = 180.0
 _ZERO = Pose(hip_rad=0.0, knee_rad=0.0)
 
-Bodies = dict[str, list[tuple[Instance, m3.Manifold]]]
+_Solid = tuple[Instance, m3.Manifold]
+Bodies = dict[str, list[_Solid]]
+STEPS = 8  #: Positions of the gears within one tooth of the sun, after which all repeats.
 
 
 def check_free_motion(product: Product) -> tuple[Check, Check, Check]:
@@ -57,24 +55,22 @@ def check_free_motion(product: Product) -> tuple[Check, Check, Check]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Turn:
-    """A joint as it is looked at: the parts on both sides of it, in a frame with its origin on the axis, which is y."""
+    """A joint between two bodies, in a frame whose y axis is the joint's."""
 
     name: str  #: of the joint
-    stop: JointStop  #: its end stops
-    #: A part of the body that stands still and one of the body that turns, at angle zero; those that turning can bring
-    #: together
+    stop: JointStop
+    #: The parts of the still and of the turning body, at angle zero, that turning can bring together
     pairs: tuple[tuple[PlacedMesh, PlacedMesh], ...]
     soft: frozenset[str]  #: names of the bumpers
     strikers: frozenset[str]  #: names of the strikers
 
     def meet_in_stop(self, one: PlacedMesh, other: PlacedMesh) -> bool:
-        """Whether one part is a bumper and the other a striker."""
+        """Return whether one part is a bumper and the other a striker."""
         names = {one.name, other.name}
         return bool(names & self.soft) and bool(names & self.strikers)
 
 
 def _turns(product: Product, by_body: Bodies) -> tuple[_Turn, _Turn]:
-    """Both joints."""
     leg = product.robot.leg
     to_knee = np.linalg.inv(body_frames(product.robot, _ZERO)["shank"]).astype(np.float64)
     return (
@@ -83,31 +79,20 @@ def _turns(product: Product, by_body: Bodies) -> tuple[_Turn, _Turn]:
     )
 
 
-def _turn(
-    name: str,
-    stop: JointStop,
-    fixed: list[tuple[Instance, m3.Manifold]],
-    moving: list[tuple[Instance, m3.Manifold]],
-    frame: Matrix,
-) -> _Turn:
-    """A joint between two bodies; ``frame`` leads from the assembly's frame to one with its origin on the axis."""
+def _turn(name: str, stop: JointStop, fixed: list[_Solid], moving: list[_Solid], frame: Matrix) -> _Turn:
+    """Return a joint between two bodies; ``frame`` leads from the assembly to an origin on the axis."""
 
     def named(role: Role) -> frozenset[str]:
         return frozenset(instance.name for instance, _ in (*fixed, *moving) if instance.part.role is role)
 
     still, turning = ([PlacedMesh.of(i.name, body, frame @ i.world) for i, body in side] for side in (fixed, moving))
     reach = {mesh.name: radii_mm(mesh) for mesh in (*still, *turning)}
-    return _Turn(
-        name=name,
-        stop=stop,
-        pairs=tuple((a, b) for a in still for b in turning if _may_meet(a, b, reach)),
-        soft=named(Role.BUMPER),
-        strikers=named(Role.STRIKER),
-    )
+    pairs = tuple((a, b) for a in still for b in turning if _may_meet(a, b, reach))
+    return _Turn(name=name, stop=stop, pairs=pairs, soft=named(Role.BUMPER), strikers=named(Role.STRIKER))
 
 
 def _by_body(product: Product) -> Bodies:
-    """The parts of each body with both joints at zero, with their meshes."""
+    """Return the parts of each body with both joints at zero, with their meshes."""
     found: Bodies = {"base": [], "thigh": [], "shank": []}
     for instance, kind in zip(instances(product.robot, _ZERO), product.kinds, strict=True):
         # What turns inside an actuator turns with the next body and has its own check.
@@ -117,7 +102,7 @@ def _by_body(product: Product) -> Bodies:
 
 
 def _while_turning(turn: _Turn) -> Iterator[Overlap]:
-    """Overlaps of the parts of two bodies while one turns about the joint between them."""
+    """Yield the overlaps of the parts of two bodies while one turns about the joint between them."""
     stop = turn.stop
     for angle in _angles(stop):
         squeezed = not stop.lower_rad <= angle <= stop.upper_rad
@@ -128,22 +113,20 @@ def _while_turning(turn: _Turn) -> Iterator[Overlap]:
             if other.name not in turned:
                 turned[other.name] = PlacedMesh.of(other.name, other.body, turn_y(float(angle)))
             if boxes_meet(one, turned[other.name]):
-                where = f"with the {turn.name} at {np.degrees(angle):.0f} deg"
-                yield from overlap_of(one, turned[other.name], where)
+                yield from overlap_of(one, turned[other.name], f"with the {turn.name} at {np.degrees(angle):.0f} deg")
 
 
 def _angles(stop: JointStop) -> NDArray[np.float64]:
-    """Angles from one end of a joint's range to the other, both included, and the ends of its stops' travel."""
+    """Return angles from one end of a joint's range to the other, and the ends of its stops' travel."""
     count = int(np.ceil((stop.upper_rad - stop.lower_rad) / _STEP_RAD)) + 1
     inside = np.linspace(stop.lower_rad, stop.upper_rad, count)
     return np.array([stop.lower_rad - stop.travel_rad, *inside, stop.upper_rad + stop.travel_rad])
 
 
 def _stop_errors(turns: Sequence[_Turn]) -> Iterator[Finding]:
-    """By how much each end stop meets at another angle than the joint's range ends at, in degrees."""
+    """Yield by how much each end stop meets at another angle than the joint's range ends at, in degrees."""
     for turn in turns:
-        pairs = [pair for pair in turn.pairs if turn.meet_in_stop(*pair)]
-        stop = turn.stop
+        pairs, stop = [pair for pair in turn.pairs if turn.meet_in_stop(*pair)], turn.stop
         for end_rad, sign in ((stop.lower_rad, -1.0), (stop.upper_rad, 1.0)):
             middle_rad = 0.5 * (stop.lower_rad + stop.upper_rad)
             met_rad = _first_contact_rad(pairs, middle_rad, end_rad + sign * stop.travel_rad)
@@ -151,13 +134,12 @@ def _stop_errors(turns: Sequence[_Turn]) -> Iterator[Finding]:
             if met_rad is None:
                 yield Finding(value=_NEVER_DEG, text=f"{end}: no bumper meets a striker")
                 continue
-            error_deg = abs(float(np.degrees(met_rad - end_rad)))
             text = f"{end}: bumper and striker meet at {np.degrees(met_rad):.2f} deg"
-            yield Finding(value=error_deg, text=text)
+            yield Finding(value=abs(float(np.degrees(met_rad - end_rad))), text=text)
 
 
 def _first_contact_rad(pairs: list[tuple[PlacedMesh, PlacedMesh]], from_rad: float, to_rad: float) -> float | None:
-    """The first angle on the way at which one of the pairs overlaps, None if none does."""
+    """Return the first angle on the way at which one of the pairs overlaps, None if none does."""
 
     def meets(angle_rad: float) -> bool:
         for one, other in pairs:
@@ -166,13 +148,10 @@ def _first_contact_rad(pairs: list[tuple[PlacedMesh, PlacedMesh]], from_rad: flo
                 return True
         return False
 
-    count = int(np.ceil(abs(to_rad - from_rad) / _SEARCH_RAD)) + 1
-    way = np.linspace(from_rad, to_rad, count)
+    way = np.linspace(from_rad, to_rad, int(np.ceil(abs(to_rad - from_rad) / _SEARCH_RAD)) + 1)
     first = next((k for k, angle in enumerate(way) if meets(float(angle))), None)
-    if first is None:
-        return None
-    if first == 0:
-        return from_rad
+    if not first:
+        return None if first is None else from_rad
     apart, met = float(way[first - 1]), float(way[first])
     while abs(met - apart) > _EXACT_RAD:
         half = 0.5 * (apart + met)
@@ -181,7 +160,7 @@ def _first_contact_rad(pairs: list[tuple[PlacedMesh, PlacedMesh]], from_rad: flo
 
 
 def _shank_clearance_mm(product: Product, by_body: Bodies) -> float:
-    """How far the shank stays from the base at any hip angle, negative if they can meet.
+    """Return how far the shank stays from the base at any hip angle, negative if they can meet.
 
     A part of the base lies within the circle about the hip axis that it reaches. The clearance is the distance of the
     shank's parts from that circle, the least over the knee's range and over all pairs that have a common stretch along
@@ -197,18 +176,14 @@ def _shank_clearance_mm(product: Product, by_body: Bodies) -> float:
             mesh = PlacedMesh.of(instance.name, body, frame @ instance.in_body)
             beside = (low < mesh.high[1] - TOUCH_MM) & (mesh.low[1] < high - TOUCH_MM)
             # The distance of a mesh is at least that of its box, which often shows that it is not the nearest.
-            if np.any(beside) and _from_axis_mm(mesh) - np.max(reach[beside]) < clearance:
+            from_axis_mm = float(np.hypot(*np.maximum(0.0, np.maximum(mesh.low, -mesh.high))[[0, 2]]))
+            if np.any(beside) and from_axis_mm - np.max(reach[beside]) < clearance:
                 clearance = min(clearance, radii_mm(mesh)[0] - np.max(reach[beside]))
     return float(clearance)
 
 
-def _from_axis_mm(mesh: PlacedMesh) -> float:
-    """Least distance of a mesh's box from the y axis."""
-    return float(np.hypot(*np.maximum(0.0, np.maximum(mesh.low, -mesh.high))[[0, 2]]))
-
-
 def radii_mm(mesh: PlacedMesh) -> tuple[float, float]:
-    """Least and greatest distance of a mesh from the y axis."""
+    """Return the least and the greatest distance of a mesh from the y axis."""
     raw = mesh.body.to_mesh64()
     points = np.asarray(raw.vert_properties)[:, [0, 2]]
     corner = points[np.asarray(raw.tri_verts)]
@@ -224,15 +199,11 @@ def radii_mm(mesh: PlacedMesh) -> tuple[float, float]:
 
 
 def _may_meet(one: PlacedMesh, other: PlacedMesh, reach: Mapping[str, tuple[float, float]]) -> bool:
-    """Whether turning about the y axis can bring two meshes together."""
+    """Return whether turning about the y axis can bring two meshes together."""
     if one.low[1] >= other.high[1] - TOUCH_MM or other.low[1] >= one.high[1] - TOUCH_MM:
         return False
     (least, greatest), (other_least, other_greatest) = reach[one.name], reach[other.name]
     return least < other_greatest - DEPTH_MM and other_least < greatest - DEPTH_MM
-
-
-STEPS = 8
-"""Positions within one tooth."""
 
 
 def check_gear_mesh(product: Product) -> Check:
@@ -241,7 +212,7 @@ def check_gear_mesh(product: Product) -> Check:
 
 
 def in_gear_cycle(product: Product) -> list[Overlap]:
-    """Overlaps of sun, planets and ring of both actuators while the sun turns by one tooth."""
+    """Return overlaps of sun, planets and ring of both actuators while the sun turns by one tooth."""
     found: list[Overlap] = []
     for name, actuator in (("hip_actuator", product.robot.hip), ("knee_actuator", product.robot.knee)):
         if name == "knee_actuator" and actuator is product.robot.hip:

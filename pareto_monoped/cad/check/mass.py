@@ -1,11 +1,4 @@
-"""Parts and bodies weigh what was simulated.
-
-Every body has its centre of mass where the simulated one has it.
-
-Every body has the inertia tensor of the simulated one.
-
-What parts and bodies weigh by their solids, for the checks of mass, centre of mass and inertia.
-"""
+"""Parts and bodies weigh what was simulated; every body has the simulated centre of mass and inertia tensor."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -22,10 +15,17 @@ from pareto_monoped.robot.units import BODIES
 def check_parts(product: Product, parts: Sequence[MassProperties]) -> Check:
     """Compare every part's solid with its record.
 
-    A bought part weighs what its catalogue says, whatever its envelope; its envelope must still have the record's
-    volume.
+    A bought part weighs what its catalogue says; its envelope must still have the record's volume.
     """
-    return worst_of(PART_MASS, f"{len(product.unique)} parts", _part_findings(product, parts))
+    findings = []
+    for kind, part, facts in zip(product.unique, parts, product.solids.result(), strict=True):
+        cad, record = float(part.mass_kg), float(kind.part.unit_mass_kg())
+        share = abs(cad / record - 1.0)
+        if kind.part.catalogue_mass_kg is not None:
+            share = max(share, abs(facts.volume_mm3 / float(kind.part.volume_mm3()) - 1.0))
+        text = f"{kind.name}: CAD {cad:.5f} kg, record {record:.5f} kg, {share:.2%} off"
+        findings.append(Finding(value=100.0 * share, text=text))
+    return worst_of(PART_MASS, f"{len(product.unique)} parts", findings)
 
 
 def check_bodies(bodies: Mapping[str, MassProperties], arrays: RobotArrays) -> Iterator[Check]:
@@ -35,16 +35,6 @@ def check_bodies(bodies: Mapping[str, MassProperties], arrays: RobotArrays) -> I
         percent = 100.0 * abs(cad / simulated - 1.0)
         text = f"{body}: CAD {cad:.4f} kg, simulated {simulated:.4f} kg ({percent:.2f}%)"
         yield worst_of(BODY_MASS.of(body), f"{cad:.4f} kg", [Finding(value=percent, text=text)])
-
-
-def _part_findings(product: Product, parts: Sequence[MassProperties]) -> Iterator[Finding]:
-    for kind, part, facts in zip(product.unique, parts, product.solids.result(), strict=True):
-        cad, record = float(part.mass_kg), float(kind.part.unit_mass_kg())
-        share = abs(cad / record - 1.0)
-        if kind.part.catalogue_mass_kg is not None:
-            share = max(share, abs(facts.volume_mm3 / float(kind.part.volume_mm3()) - 1.0))
-        text = f"{kind.name}: CAD {cad:.5f} kg, record {record:.5f} kg, {share:.2%} off"
-        yield Finding(value=100.0 * share, text=text)
 
 
 def check_centre_of_mass(bodies: Mapping[str, MassProperties], arrays: RobotArrays) -> Iterator[Check]:
@@ -75,17 +65,12 @@ def check_inertia(bodies: Mapping[str, MassProperties], arrays: RobotArrays) -> 
 
 
 def weigh_parts(product: Product) -> list[MassProperties]:
-    """Mass properties of every unique part's solid in its own frame; bought parts weigh what their catalogue says."""
+    """Return the mass properties of every unique part's solid in its own frame; bought parts have catalogue masses."""
     return [_weigh(kind, facts) for kind, facts in zip(product.unique, product.solids.result(), strict=True)]
 
 
 def weigh_bodies(product: Product, parts: Sequence[MassProperties]) -> Mapping[str, MassProperties]:
-    """Mass properties of every body, in its body frame.
-
-    Args:
-        product: where the parts stand.
-        parts: of every unique part.
-    """
+    """Return the mass properties of every body, in its body frame."""
     return {
         body: total(
             parts[kind].placed(instance.in_body[:3, :3], 1e-3 * instance.in_body[:3, 3])

@@ -1,7 +1,4 @@
-"""No two parts overlap in the pose of the export.
-
-Two parts in each other's way: how much volume they share, and how deep the overlap is on average.
-"""
+"""No two parts overlap in the pose of the export; how much volume two parts share, and how deep on average."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -12,23 +9,23 @@ from numpy.typing import NDArray
 
 from pareto_monoped.cad.check.result import OVERLAP, Check, Finding, Limit, worst_of
 from pareto_monoped.cad.product import Instance, Matrix, Product
-from pareto_monoped.cad.shape.meshes import TOLERANCE_MM, placed
-from pareto_monoped.cad.shape.outlines import all_polygons
+from pareto_monoped.cad.shape.meshes import TOLERANCE_MM, cross_section, placed
+from pareto_monoped.cad.shape.outlines import all_polygons, centres_mm
 from pareto_monoped.geometry.features import CountersunkHead
 from pareto_monoped.geometry.gears import InternalGear
 from pareto_monoped.geometry.parts import Part
-from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
+from pareto_monoped.geometry.shapes import Circle, Pattern
 
-TOUCH_MM = 1e-6
-"""Closer than this is touching, not overlapping."""
+TOUCH_MM = 1e-6  #: Closer than this is touching, not overlapping.
 _LEAST_MM3 = 1e-6  # rounding in manifold3d
+_LEAST_MM2 = 1e-9
+"""Areas below this are rounding: over the height of any part they make less than the least volume of an overlap."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Overlap:
     """Two instances that share volume."""
 
-    #: one, other: their names
     one: str
     other: str
     volume_mm3: float  #: shared volume
@@ -51,14 +48,14 @@ class PlacedMesh:
 
     @classmethod
     def of(cls, name: str, body: m3.Manifold, matrix: Matrix) -> "PlacedMesh":
-        """A mesh moved by a 4 x 4 matrix."""
+        """Return a mesh moved by a 4 x 4 matrix."""
         moved = placed(body, matrix)
         box = np.asarray(moved.bounding_box())
         return cls(name=name, body=moved, low=box[:3], high=box[3:])
 
 
 def near(meshes: Sequence[PlacedMesh]) -> Iterator[tuple[PlacedMesh, PlacedMesh]]:
-    """Pairs of different meshes whose bounding boxes overlap, each pair once."""
+    """Yield pairs of different meshes whose bounding boxes overlap, each pair once."""
     low, high = np.array([mesh.low for mesh in meshes]), np.array([mesh.high for mesh in meshes])
     meets = np.all((low[:, None] < high[None] - TOUCH_MM) & (low[None] < high[:, None] - TOUCH_MM), axis=2)
     for i, j in np.argwhere(np.triu(meets, 1)):
@@ -66,12 +63,12 @@ def near(meshes: Sequence[PlacedMesh]) -> Iterator[tuple[PlacedMesh, PlacedMesh]
 
 
 def boxes_meet(one: PlacedMesh, other: PlacedMesh) -> bool:
-    """Whether two bounding boxes overlap."""
+    """Return whether two bounding boxes overlap."""
     return bool(np.all(one.low < other.high - TOUCH_MM) and np.all(other.low < one.high - TOUCH_MM))
 
 
 def overlap_of(one: PlacedMesh, other: PlacedMesh, where: str) -> Iterator[Overlap]:
-    """The overlap of two meshes, if they have one."""
+    """Yield the overlap of two meshes, if they have one."""
     shared = one.body ^ other.body
     volume = shared.volume()
     if volume > _LEAST_MM3:
@@ -80,7 +77,7 @@ def overlap_of(one: PlacedMesh, other: PlacedMesh, where: str) -> Iterator[Overl
 
 
 def deepest(limit: Limit, looked_at: str, found: Iterable[Overlap]) -> Check:
-    """A check of overlaps: each pair of parts counts once, with its deepest overlap."""
+    """Return a check of overlaps: each pair of parts counts once, with its deepest overlap."""
     worst: dict[tuple[str, str], Overlap] = {}
     for overlap in found:
         key = (overlap.one, overlap.other)
@@ -89,18 +86,14 @@ def deepest(limit: Limit, looked_at: str, found: Iterable[Overlap]) -> Check:
     return worst_of(limit, looked_at, [Finding(value=o.depth_mm, text=str(o)) for o in worst.values()])
 
 
-_LEAST_MM2 = 1e-9
-"""Areas below this are rounding: over the height of any part they make less than the least volume of an overlap."""
-
-
 def check(product: Product) -> Check:
-    """Look at all pairs of instances."""
+    """Look at all pairs of instances in the product's pose."""
     found, pairs = in_pose(product)
     return deepest(OVERLAP, f"all {pairs} pairs in the exported pose", found)
 
 
 def in_pose(product: Product) -> tuple[list[Overlap], int]:
-    """Overlaps of all pairs of instances in the product's pose, and the number of pairs."""
+    """Return the overlaps of all pairs of instances in the product's pose, and the number of pairs."""
     meshes = [PlacedMesh.of(i.name, k.mesh.body, i.world) for i, k in product.placed()]
     parts = {id(instance.part): instance.part for instance in product.instances}
     records = {key: _record(part) for key, part in parts.items()}
@@ -109,8 +102,7 @@ def in_pose(product: Product) -> tuple[list[Overlap], int]:
     for one, other in near(meshes):
         if not _apart(stacks[one.name], stacks[other.name]):
             found += overlap_of(one, other, "in the pose")
-    count = len(meshes)
-    return found, count * (count - 1) // 2
+    return found, len(meshes) * (len(meshes) - 1) // 2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,16 +110,13 @@ class _Stack:
     """The layers of a part around its axis, in the part's frame or in the assembly."""
 
     axis: NDArray[np.float64]  #: x and z of the axis in the assembly, in mm
-    #: Per prism the least and greatest radius, the low and high end along the axis, in mm; shape (n, 4)
-    rows: NDArray[np.float64]
-    #: Per round hole the number of its prism, x and y of its axis (in the assembly x and z) and its radius; shape (m,
-    #: 4)
-    bores: NDArray[np.float64]
+    rows: NDArray[np.float64]  #: per prism the least and greatest radius, low and high end, in mm; shape (n, 4)
+    bores: NDArray[np.float64]  #: per round hole its prism's number, x and y of its axis, its radius; shape (m, 4)
     sections: tuple[m3.CrossSection, ...]  #: per row the flat shape that its triangles are made from, or one around it
 
 
 def _record(part: Part) -> _Stack | None:
-    """The layers of a part in its own frame; None if it is not made of prisms only."""
+    """Return the layers of a part in its own frame; None if it is not made of prisms only."""
     rows, bores, sections = [], [], []
     for number, prism in enumerate(part.prisms):
         inner = [_bore_radius(hole) for hole in prism.holes if isinstance(hole, Circle | InternalGear)]
@@ -135,26 +124,22 @@ def _record(part: Part) -> _Stack | None:
         rows.append((max(inner, default=0.0), greatest, float(prism.z0_mm), float(prism.z1_mm)))
         for hole in prism.holes:
             if isinstance(hole, Circle | Pattern):
-                centres = hole.centres_mm() if isinstance(hole, Pattern) else [(float(hole.x_mm), float(hole.y_mm))]
-                bores += [(float(number), x, y, float(hole.radius_mm)) for x, y in centres]
-        sections.append(_section([prism.outline]) - _section(prism.holes) if prism.holes else _section([prism.outline]))
+                bores += [(float(number), x, y, float(hole.radius_mm)) for x, y in centres_mm(hole)]
+        section = cross_section([prism.outline], TOLERANCE_MM)
+        sections.append(section - cross_section(prism.holes, TOLERANCE_MM) if prism.holes else section)
     # A head counts as a cylinder as wide as its face: the question is only whether the meshes need a look.
     for head in part.features:
         if isinstance(head, CountersunkHead):
             (bevel,) = head.bevels
             rows.append((0.0, float(head.radius_mm), float(bevel.face_mm), float(bevel.end_mm)))
-            sections.append(_section([Circle(radius_mm=head.radius_mm)]))
+            sections.append(cross_section([Circle(radius_mm=head.radius_mm)], TOLERANCE_MM))
     if not rows or part.balls:
         return None
     return _Stack(axis=np.zeros(2), rows=np.array(rows), bores=np.array(bores).reshape(-1, 4), sections=tuple(sections))
 
 
-def _section(shapes: Sequence[Shape]) -> m3.CrossSection:
-    return m3.CrossSection(all_polygons(shapes, TOLERANCE_MM), m3.FillRule.NonZero)
-
-
 def _stack(instance: Instance, record: _Stack | None) -> _Stack | None:
-    """A part's layers where an instance of it stands; its axis is parallel to the joints'."""
+    """Return a part's layers where an instance of it stands; its axis is parallel to the joints'."""
     if record is None:
         return None
     world = instance.world
@@ -167,40 +152,36 @@ def _stack(instance: Instance, record: _Stack | None) -> _Stack | None:
 
 
 def _bore_radius(hole: Circle | InternalGear) -> float:
-    """Radius of a hole around the part's axis; 0 for one that is elsewhere."""
+    """Return the radius of a hole around the part's axis; 0 for one that is elsewhere."""
     if isinstance(hole, InternalGear):
         return float(hole.tip_radius_mm)
     return float(hole.radius_mm) if float(hole.x_mm) == 0.0 and float(hole.y_mm) == 0.0 else 0.0
 
 
 def _apart(one: _Stack | None, other: _Stack | None) -> bool:
-    """Whether the records of two instances say that they keep apart, so that their meshes need not be intersected."""
+    """Return whether the records of two instances say that they keep apart, so that no meshes need intersecting."""
     if one is None or other is None:
         return False
     on_one_axis = float(np.abs(one.axis - other.axis).max()) <= TOUCH_MM
-    return (
-        (on_one_axis and _as_rings(one, other))
-        or _in_holes(one, other)
-        or _in_holes(other, one)
-        or _in_layers(one, other)
-    )
+    as_rings = on_one_axis and _as_rings(one, other)
+    return as_rings or _in_holes(one, other) or _in_holes(other, one) or _in_layers(one, other)
 
 
 def _common(one: _Stack, other: _Stack) -> NDArray[np.bool_]:
-    """Which layers have a stretch of the axis in common, shape (n of one, n of the other)."""
+    """Return which layers have a stretch of the axis in common, shape (n of one, n of the other)."""
     a, b = one.rows[:, None], other.rows[None]
     return np.asarray(np.minimum(a[..., 3], b[..., 3]) - np.maximum(a[..., 2], b[..., 2]) > TOUCH_MM)
 
 
 def _as_rings(one: _Stack, other: _Stack) -> bool:
-    """Whether two instances on one axis are rings, one around the other or one behind the other."""
+    """Return whether two instances on one axis are rings, one around the other or one behind the other."""
     a, b = one.rows[:, None], other.rows[None]
     radial = np.minimum(a[..., 1], b[..., 1]) - np.maximum(a[..., 0], b[..., 0]) > TOUCH_MM
     return not bool(np.any(radial & _common(one, other)))
 
 
 def _in_holes(one: _Stack, other: _Stack) -> bool:
-    """Whether every layer of one stands in a round hole of each layer of the other beside it, such as a screw."""
+    """Return whether each layer of one, such as a screw, stands in a round hole of each layer of the other beside."""
     beside = _common(one, other)
     room = other.bores[:, 3] - np.hypot(*(other.bores[:, 1:3] - one.axis).T)
     widest = np.zeros(len(other.rows))
@@ -209,7 +190,7 @@ def _in_holes(one: _Stack, other: _Stack) -> bool:
 
 
 def _in_layers(one: _Stack, other: _Stack) -> bool:
-    """Whether the flat shapes of two layers with a common stretch of the axis never have an area in common."""
+    """Return whether the flat shapes of two layers with a common stretch of the axis never have an area in common."""
     return all(
         (one.sections[a] ^ other.sections[b]).area() <= _LEAST_MM2 for a, b in np.argwhere(_common(one, other)).tolist()
     )

@@ -1,7 +1,4 @@
-"""What a check found, compared with its limit.
-
-The limits of all checks in one table, with their reasons.
-"""
+"""What a check found, compared with its limit, and the limits of all checks with their reasons."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -17,11 +14,11 @@ class Limit:
     at_least: bool = False  #: whether it is a lower limit
 
     def allows(self, value: float) -> bool:
-        """Whether a measured value is within the limit; NaN is not."""
+        """Return whether a measured value is within the limit; NaN is not."""
         return value >= self.value if self.at_least else value <= self.value
 
     def of(self, body: str) -> "Limit":
-        """The limit for one body, ``{}`` in its name replaced by the body's."""
+        """Return the limit for one body, ``{}`` in its name replaced by the body's."""
         return replace(self, name=self.name.format(body))
 
 
@@ -101,10 +98,7 @@ class Check:
 
 
 def worst_of(limit: Limit, looked_at: str, findings: Iterable[Finding]) -> Check:
-    """A check of measured values: fails for each one that is beyond the limit.
-
-    Without findings the measured value is the limit's own for a lower limit, else 0.
-    """
+    """Return a check that fails for each value beyond the limit; without any it measures 0, or a lower limit's own."""
     found = sorted(findings, key=lambda finding: finding.value, reverse=not limit.at_least)
     nothing = limit.value if limit.at_least else 0.0
     return Check(
@@ -119,11 +113,12 @@ def worst_of(limit: Limit, looked_at: str, findings: Iterable[Finding]) -> Check
 
 
 def count_of(limit: Limit, looked_at: str, failures: Sequence[str]) -> Check:
-    """A check of things that are right or wrong: the measured value is the number of the wrong ones."""
+    """Return a check of things that are right or wrong: the measured value is the number of the wrong ones."""
+    wrong = float(len(failures))
     return Check(
         name=limit.name,
         looked_at=looked_at,
-        measured=float(len(failures)),
+        measured=wrong,
         limit=limit.value,
         unit=limit.unit,
         failures=tuple(failures),

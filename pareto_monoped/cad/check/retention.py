@@ -1,4 +1,4 @@
-"""Is every part held: pushed along or across its axis, it must push on the rods by which the base is carried.
+"""Every part is held: a push along or across its axis ends at the rods that carry the base.
 
 Moved by a little play, a part runs into its neighbours, these into theirs, and so on; it is held if that ends at the
 base, in each of six directions. All parts are stacks of flat shapes across the joints' axes, so that this is a question
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.cad.check.result import LOOSE, Check, count_of
 from pareto_monoped.cad.product import Instance, Pose, instances
-from pareto_monoped.cad.shape.outlines import all_polygons
+from pareto_monoped.cad.shape.meshes import cross_section
 from pareto_monoped.geometry.features import CountersunkHead
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.parts import Part
@@ -28,10 +28,8 @@ from pareto_monoped.geometry.roles import FASTENERS, Group, Role
 from pareto_monoped.geometry.shapes import Circle, Shape
 from pareto_monoped.robot.build import Robot
 
-PLAY_MM = 0.8
-"""How far a part may move before something stops it: the largest play of the design, 0.5 mm, and 0.3 mm."""
-THREAD_SHARE = 0.6
-"""Least depth of thread over the screw's diameter."""
+PLAY_MM = 0.8  #: How far a part may move before something stops it: the largest play of the design, 0.5 mm, and 0.3 mm.
+THREAD_SHARE = 0.6  #: Least depth of thread over the screw's diameter.
 _GROUND = Role.ROD  # the test stand's carriage clamps to the rods
 POSE = Pose(hip_rad=0.0, knee_rad=0.5 * np.pi)
 """Within the knee's range, where no end stop is met, and with the shank's own axes along those of the assembly."""
@@ -74,7 +72,7 @@ def check(robot: Robot) -> Check:
 
 
 def loose_parts(robot: Robot) -> tuple[list[Loose], int]:
-    """Every instance that can move, and how many were looked at."""
+    """Return every instance that can move, and how many were looked at."""
     placed = instances(robot, POSE)
     pieces = slabs(placed)
     runs_into = _contacts(placed, pieces)
@@ -82,7 +80,8 @@ def loose_parts(robot: Robot) -> tuple[list[Loose], int]:
     ground = np.array([instance.part.role is _GROUND for instance in placed])
     free: list[list[str]] = [[] for _ in placed]
     # Rotors float between their bearings and a chain is limp: along the axis they hold nothing but themselves.
-    weak = np.array([_weak(instance.part) for instance in placed])
+    limp = (Role.CHAIN, Role.TURNBUCKLE)
+    weak = np.array([one.part.group is Group.ROTOR or one.part.role in limp for one in placed])
     for (axis, sign), blocked in runs_into.items():
         edges = blocked | tied
         if axis == "y":
@@ -90,19 +89,12 @@ def loose_parts(robot: Robot) -> tuple[list[Loose], int]:
         held = _reaches(edges, ground)
         for k in np.flatnonzero(~held):
             free[k].append(f"{sign}{axis}")
-    return [
-        Loose(name=instance.name, directions=tuple(directions))
-        for instance, directions in zip(placed, free, strict=True)
-        if directions
-    ], len(placed)
-
-
-def _weak(part: Part) -> bool:
-    return part.group is Group.ROTOR or part.role in (Role.CHAIN, Role.TURNBUCKLE)
+    loose = [Loose(name=one.name, directions=tuple(ways)) for one, ways in zip(placed, free, strict=True) if ways]
+    return loose, len(placed)
 
 
 def _reaches(edges: Bools, ground: Bools) -> Bools:
-    """From which nodes the ground can be reached along edges, shape (n,)."""
+    """Return from which nodes the ground can be reached along edges, shape (n,)."""
     held = ground
     while True:
         more = held | edges[:, held].any(axis=1)
@@ -112,7 +104,7 @@ def _reaches(edges: Bools, ground: Bools) -> Bools:
 
 
 def _contacts(placed: Sequence[Instance], pieces: Sequence[Slab]) -> dict[tuple[str, str], Bools]:
-    """For each direction a matrix, true at (i, j) where instance i, moved that way, runs into instance j."""
+    """Return per direction a matrix, true at (i, j) where instance i, moved that way, runs into instance j."""
     owner = np.array([slab.owner for slab in pieces])
     low, high = np.array([slab.low for slab in pieces]), np.array([slab.high for slab in pieces])
     bounds = np.array([slab.section.bounds() for slab in pieces])
@@ -158,7 +150,7 @@ def _contacts(placed: Sequence[Instance], pieces: Sequence[Slab]) -> dict[tuple[
 
 
 def threads(placed: Sequence[Instance], pieces: Sequence[Slab]) -> Bools:
-    """True at (i, j) where one is a screw whose core fits a hole of the other all around, over enough depth."""
+    """Return true at (i, j) where one is a screw whose core fits a hole of the other all around, over enough depth."""
     tied = np.zeros((len(placed), len(placed)), dtype=bool)
     low, high = np.array([slab.low for slab in pieces]), np.array([slab.high for slab in pieces])
     bounds = np.array([slab.section.bounds() for slab in pieces])
@@ -175,13 +167,13 @@ def threads(placed: Sequence[Instance], pieces: Sequence[Slab]) -> Bools:
             if (skin ^ pieces[b].section).area() > 0.9 * skin.area():
                 depth[pieces[b].owner] = depth.get(pieces[b].owner, 0.0) + float(common[b])
         for j, deep in depth.items():
-            if deep >= THREAD_SHARE * _diameter_mm(part) - _TOUCH_MM:
+            if deep >= THREAD_SHARE * thread_diameter_mm(part) - _TOUCH_MM:
                 tied[screw.owner, j] = tied[j, screw.owner] = True
     return tied
 
 
 def _joints(placed: Sequence[Instance], runs_into: dict[tuple[str, str], Bools]) -> Bools:
-    """True at (i, j) where one says to be joined to the other, which is in its way on two opposite sides."""
+    """Return true at (i, j) where one says to be joined to the other, which is in its way on two opposite sides."""
     tied = np.zeros((len(placed), len(placed)), dtype=bool)
     for i, instance in enumerate(placed):
         joint = instance.part.joint
@@ -195,19 +187,24 @@ def _joints(placed: Sequence[Instance], runs_into: dict[tuple[str, str], Bools])
     return tied
 
 
-def _diameter_mm(part: Part) -> float:
-    """Of a screw: of its widest cylinder below the head."""
-    radii = sorted({float(p.outline.radius_mm) for p in part.prisms if isinstance(p.outline, Circle)})
+def cylinders(part: Part) -> list[tuple[float, float, float]]:
+    """Return the radius and both heights of the cylinders of a screw."""
+    discs = [(prism.outline, prism) for prism in part.prisms]
+    return [(float(o.radius_mm), float(p.z0_mm), float(p.z1_mm)) for o, p in discs if isinstance(o, Circle)]
+
+
+def thread_diameter_mm(part: Part) -> float:
+    """Return the diameter of a screw's thread: of its widest cylinder below the head."""
+    radii = sorted({radius for radius, _, _ in cylinders(part)})
     return 2.0 * radii[min(1, len(radii) - 1)]
 
 
 def slabs(placed: Iterable[Instance], *, blunt: bool = True) -> list[Slab]:
-    """The pieces of all instances in the assembly, in their order; gears by their root circles if ``blunt``."""
+    """Return the pieces of all instances in the assembly, in their order; gears by their root circles if ``blunt``."""
     local: dict[int, list[tuple[m3.CrossSection, float, float]]] = {}
     found = []
     for k, instance in enumerate(placed):
-        key = id(instance.part)
-        if key not in local:
+        if (key := id(instance.part)) not in local:
             local[key] = list(_sections(instance.part, blunt=blunt))
         world = instance.world
         flat = np.hstack([world[[0, 2]][:, :2], world[[0, 2]][:, 3:]])
@@ -218,29 +215,26 @@ def slabs(placed: Iterable[Instance], *, blunt: bool = True) -> list[Slab]:
 
 
 def _sections(part: Part, *, blunt: bool) -> Iterator[tuple[m3.CrossSection, float, float]]:
-    """The prisms of a part, a slice of its balls, and discs for its countersunk heads."""
+    """Yield the prisms of a part, a slice of its balls, and discs for its countersunk heads."""
     for prism in part.prisms:
-        section = _section([_blunt(prism.outline) if blunt else prism.outline])
+        section = cross_section([_blunt(prism.outline) if blunt else prism.outline], _TOLERANCE_MM)
         if prism.holes:
-            section -= _section([_blunt(hole) if blunt else hole for hole in prism.holes])
+            section -= cross_section([_blunt(hole) if blunt else hole for hole in prism.holes], _TOLERANCE_MM)
         yield section, float(prism.z0_mm), float(prism.z1_mm)
     for ball in part.balls:
         if ball.pocket is not None:
-            disc = _section([Circle(radius_mm=ball.radius_mm, y_mm=ball.y_mm)])
-            yield disc - _section([ball.pocket.outline]), float(ball.pocket.z0_mm), float(ball.pocket.z1_mm)
+            disc = cross_section([Circle(radius_mm=ball.radius_mm, y_mm=ball.y_mm)], _TOLERANCE_MM)
+            pocket = cross_section([ball.pocket.outline], _TOLERANCE_MM)
+            yield disc - pocket, float(ball.pocket.z0_mm), float(ball.pocket.z1_mm)
     for head in part.features:
         if isinstance(head, CountersunkHead):
             face = float(head.face_mm)
             out = face - head.inwards * _HEAD_MM
-            yield _section([Circle(radius_mm=head.radius_mm)]), min(face, out), max(face, out)
-
-
-def _section(shapes: Sequence[Shape]) -> m3.CrossSection:
-    return m3.CrossSection(all_polygons(shapes, _TOLERANCE_MM), m3.FillRule.NonZero)
+            yield cross_section([Circle(radius_mm=head.radius_mm)], _TOLERANCE_MM), min(face, out), max(face, out)
 
 
 def _blunt(shape: Shape) -> Shape:
-    """A gear without its teeth: what is surely material, or surely not."""
+    """Return a gear without its teeth: what is surely material, or surely not."""
     if isinstance(shape, ExternalGear | InternalGear):
         return Circle(radius_mm=float(shape.root_radius_mm))
     return shape

@@ -1,9 +1,4 @@
-"""All checks that an export must pass, in the order in which it reports them.
-
-Every joint has its required safety factor under the loads of the jump; rows that only inform are left out.
-
-Every part's solid passes the CAD kernel's own check of topology and geometry.
-"""
+"""All checks that an export must pass, in the order in which it reports them."""
 
 from collections.abc import Mapping, Sequence
 
@@ -16,28 +11,20 @@ from pareto_monoped.strength.factors import JointFactor
 
 
 def check_strength(factors: Sequence[JointFactor]) -> Check:
-    """Compare every factor with the one required.
-
-    Args:
-        factors: of all joints; none if the design does not jump, so that there are no loads.
-    """
+    """Compare every factor with the one required; no factors if the design does not jump, and none that only inform."""
     factors = [one for one in factors if not one.joint.informs]
     looked_at = f"{len(factors)} joints under the loads of the jump" if factors else "no joints, as it does not jump"
-    return worst_of(STRENGTH, looked_at, [Finding(value=one.share, text=_sentence(one)) for one in factors])
-
-
-def _sentence(one: JointFactor) -> str:
-    joint = one.joint
-    return f"{joint.name}: safety factor = {one.factor:.3g}: must be at least {joint.required:g}; {joint.cure}"
+    findings = []
+    for one in factors:
+        bound = f"safety factor = {one.factor:.3g}: must be at least {one.joint.required:g}"
+        findings.append(Finding(value=one.share, text=f"{one.joint.name}: {bound}; {one.joint.cure}"))
+    return worst_of(STRENGTH, looked_at, findings)
 
 
 def check_validity(product: Product) -> Check:
-    """Look at the solid of every unique part."""
-    bad = [
-        f"{kind.name}: its solid is not valid"
-        for kind, solid in zip(product.unique, product.solids.result(), strict=True)
-        if not solid.valid
-    ]
+    """Have the CAD kernel check topology and geometry of every unique part's solid."""
+    solids = zip(product.unique, product.solids.result(), strict=True)
+    bad = [f"{kind.name}: its solid is not valid" for kind, solid in solids if not solid.valid]
     return count_of(VALID, f"{len(product.unique)} parts", bad)
 
 
@@ -49,14 +36,10 @@ def run_checks(
     other_files: Mapping[str, bytes],
     factors: Sequence[JointFactor] | None = None,
 ) -> tuple[Check, ...]:
-    """All checks of a product against the robot that is simulated.
+    """Return all checks of a product against the robot that is simulated, with masses from the parts.
 
-    Args:
-        product: solids, meshes, instances.
-        arrays: the same robot as the simulation carries it, one row, masses from the parts.
-        part_files: the STL file of every unique part, whether it is to be written or not, by the part's name.
-        other_files: all other files with triangles, by path.
-        factors: of all joints, if they must be as required.
+    ``part_files`` has the STL file of every unique part by the part's name, written or not, ``other_files`` all other
+    files with triangles by path. ``factors`` are given if they must be as required.
     """
     # First what does not need the solids, which the kernel's process is building meanwhile.
     without_solids = (

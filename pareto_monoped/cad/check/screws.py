@@ -1,8 +1,7 @@
-"""Every countersunk head lies in a countersink of its size, every screw in a made part in a tapped hole of its size.
+"""Every countersunk head has a countersink of its size, every screw in a made part a tapped hole of its size.
 
-The records of holes are compared with those of screws, so that what is drawn is also what the maker is told.
-
-Every screw and bolt stands in holes of at least two other parts, on the holes' axes.
+The records of holes are compared with those of screws, so that what is drawn is also what the maker is told. Every
+screw and bolt stands in holes of at least two other parts, on the holes' axes.
 """
 
 import math
@@ -13,16 +12,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.cad.check.result import BOLT_OFFSET, BOLT_PARTS, SEATS, Check, Finding, count_of, worst_of
+from pareto_monoped.cad.check.retention import cylinders, thread_diameter_mm
 from pareto_monoped.cad.product import Instance, Product
+from pareto_monoped.cad.shape.outlines import centres_mm
 from pareto_monoped.geometry.features import Cone, CountersunkHead, Hole
-from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import FASTENERS, SCREWS
 from pareto_monoped.geometry.shapes import Circle, Pattern
 
-_SAME_MM = 0.05
-"""Heights and sizes that differ by less are one."""
+_SAME_MM = 0.05  # heights and sizes that differ by less are one
 _ENGAGED_MM = 0.3  # a screw's core stands in a hole by at least this
 _PLAY_MM = 0.1  # of a screw's core in its tapped hole, radial
+_SEARCH_MM = 1.0
+"""A hole whose axis is nearer than this is meant for the screw: a third of the smallest one's diameter, M3."""
+_STANDS_MM = 0.1  # least common length of a screw and its hole: thinner than any sheet
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,7 +58,7 @@ def check_seats(product: Product) -> Check:
             for hole in holes:
                 if _on_axis(core, hole) and abs(hole.size - core.size) < _PLAY_MM and _engaged(core, hole):
                     cut = [t for t in threads if t.owner == hole.owner and _on_axis(core, t) and _engaged(core, t)]
-                    diameter = _diameter_mm(fastener.part)
+                    diameter = thread_diameter_mm(fastener.part)
                     if not any(abs(thread.size - diameter) < _SAME_MM for thread in cut):
                         failures.append(f"{fastener.name}: no thread M{diameter:g} in {hole.owner}")
     return count_of(SEATS, f"{looked_at} screws and bolts", failures)
@@ -66,7 +69,6 @@ def _on_axis(one: _Round, other: _Round) -> bool:
 
 
 def _same(one: _Round, other: _Round) -> bool:
-    """Whether a head and a countersink begin and end at the same heights, as wide as each other."""
     return max(abs(one.low - other.low), abs(one.high - other.high), abs(one.size - other.size)) < _SAME_MM
 
 
@@ -79,15 +81,11 @@ _Local = tuple[float, float, float, float, float]
 
 
 def _each(instance: Instance, of: Callable[[Part], Iterator[_Local]]) -> Iterator[_Round]:
-    """What a part has, where an instance has it."""
+    """Yield what a part has, where an instance has it."""
     for x, y, one, other, size in of(instance.part):
         ends = [instance.world @ np.array([x, y, z, 1.0]) for z in (one, other)]
         low, high = sorted(float(end[1]) for end in ends)
         yield _Round(owner=instance.name, x=float(ends[0][0]), z=float(ends[0][2]), low=low, high=high, size=size)
-
-
-def _centres(shape: Circle | Pattern) -> list[tuple[float, float]]:
-    return shape.centres_mm() if isinstance(shape, Pattern) else [(float(shape.x_mm), float(shape.y_mm))]
 
 
 def _heads(part: Part) -> Iterator[_Local]:
@@ -105,7 +103,7 @@ def _countersinks(part: Part) -> Iterator[_Local]:
         for mouth, face, inwards in ((hole.low, hole.low_mm, 1.0), (hole.high, hole.high_mm, -1.0)):
             if mouth is not None and mouth.kind is Cone.COUNTERSINK:
                 for shape in hole.shapes:
-                    for x, y in _centres(shape):
+                    for x, y in centres_mm(shape):
                         yield x, y, float(face), float(face) + inwards, float(mouth.radius_mm)
 
 
@@ -114,61 +112,28 @@ def _threads(part: Part) -> Iterator[_Local]:
     for hole in part.features:
         if isinstance(hole, Hole) and hole.thread is not None:
             for shape in hole.shapes:
-                for x, y in _centres(shape):
+                for x, y in centres_mm(shape):
                     yield x, y, float(hole.low_mm), float(hole.high_mm), hole.thread.diameter_mm
 
 
 def _holes(part: Part) -> Iterator[_Local]:
-    """All round holes with their radii."""
     for prism in part.prisms:
         for hole in prism.holes:
             if isinstance(hole, Circle | Pattern):
-                for x, y in _centres(hole):
+                for x, y in centres_mm(hole):
                     yield x, y, float(prism.z0_mm), float(prism.z1_mm), float(hole.radius_mm)
 
 
 def _cores(part: Part) -> Iterator[_Local]:
-    """The threaded end of a screw, which is drawn with the radius of its core."""
+    """Yield the threaded end of a screw, which is drawn with the radius of its core."""
     if part.role in SCREWS:
-        radius, low, high = min(_cylinders(part))
+        radius, low, high = min(cylinders(part))
         yield 0.0, 0.0, low, high, radius
-
-
-def _diameter_mm(part: Part) -> float:
-    """Of a screw: of its widest cylinder below the head."""
-    radii = sorted({radius for radius, _, _ in _cylinders(part)})
-    return 2.0 * radii[min(1, len(radii) - 1)]
-
-
-def _cylinders(part: Part) -> list[tuple[float, float, float]]:
-    """Radius and both heights of the cylinders of a screw."""
-    return [
-        (float(prism.outline.radius_mm), float(prism.z0_mm), float(prism.z1_mm))
-        for prism in part.prisms
-        if isinstance(prism.outline, Circle)
-    ]
-
-
-_SEARCH_MM = 1.0
-"""A hole whose axis is nearer than this is meant for the screw: a third of the smallest one's diameter, M3."""
-_BOLTS_ENGAGED_MM = 0.1
-"""Least common length of a screw and its hole: thinner than any sheet."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Hole:
-    """A round hole in the assembly's frame: whose it is, x and z of its axis, its extent along y, in mm."""
-
-    owner: str
-    x: float
-    z: float
-    low: float
-    high: float
 
 
 def check_bolts(product: Product) -> tuple[Check, Check]:
     """Look at every screw and bolt: how far it is off the axes of its holes, and how many parts it joins."""
-    holes = [hole for instance in product.instances for hole in _bolts_holes(instance)]
+    holes = [hole for instance in product.instances for hole in _each(instance, _holes)]
     offsets, joins = [], []
     fasteners = [instance for instance in product.instances if instance.part.role in FASTENERS]
     for fastener in fasteners:
@@ -184,12 +149,12 @@ def check_bolts(product: Product) -> tuple[Check, Check]:
     return worst_of(BOLT_OFFSET, looked_at, offsets), worst_of(BOLT_PARTS, looked_at, joins)
 
 
-def _offsets_mm(fastener: Instance, holes: list[_Hole]) -> dict[str, float]:
-    """Greatest distance of a fastener's axis from the axes of the holes in which it stands, by the holes' owners."""
+def _offsets_mm(fastener: Instance, holes: list[_Round]) -> dict[str, float]:
+    """Return the greatest distance of a fastener's axis from those of the holes in which it stands, by their owners."""
     centre, low, high = _shaft(fastener)
     found: dict[str, float] = {}
     for hole in holes:
-        if hole.owner == fastener.name or min(hole.high, high) - max(hole.low, low) <= _BOLTS_ENGAGED_MM:
+        if hole.owner == fastener.name or min(hole.high, high) - max(hole.low, low) <= _STANDS_MM:
             continue
         offset = float(np.hypot(hole.x - centre[0], hole.z - centre[1]))
         if offset < _SEARCH_MM:
@@ -198,26 +163,9 @@ def _offsets_mm(fastener: Instance, holes: list[_Hole]) -> dict[str, float]:
 
 
 def _shaft(fastener: Instance) -> tuple[NDArray[np.float64], float, float]:
-    """Where a fastener's axis pierces the x-z plane, and its extent along y, in the assembly's frame."""
+    """Return where a fastener's axis pierces the x-z plane, and its extent along y, in the assembly's frame."""
     ends = [
         fastener.world @ np.array([0.0, 0.0, float(z), 1.0]) for p in fastener.part.prisms for z in (p.z0_mm, p.z1_mm)
     ]
     heights = [float(end[1]) for end in ends]
     return ends[0][[0, 2]], min(heights), max(heights)
-
-
-def _bolts_holes(instance: Instance) -> Iterator[_Hole]:
-    """Every round hole of an instance."""
-    for prism in instance.part.prisms:
-        for x, y in _centres_mm(prism):
-            ends = [instance.world @ np.array([x, y, float(z), 1.0]) for z in (prism.z0_mm, prism.z1_mm)]
-            low, high = sorted(float(end[1]) for end in ends)
-            yield _Hole(owner=instance.name, x=float(ends[0][0]), z=float(ends[0][2]), low=low, high=high)
-
-
-def _centres_mm(prism: Prism) -> Iterator[tuple[float, float]]:
-    for hole in prism.holes:
-        if isinstance(hole, Circle):
-            yield float(hole.x_mm), float(hole.y_mm)
-        elif isinstance(hole, Pattern):
-            yield from hole.centres_mm()

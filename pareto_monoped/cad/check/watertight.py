@@ -1,7 +1,4 @@
-"""Every mesh is closed when it is read back from its file, and encloses the volume of its part.
-
-Triangles as other programs read them, from the bytes of the STL, 3MF and GLB files that this package writes.
-"""
+"""Every mesh is closed when it is read back from the bytes of its file, and encloses the volume of its part."""
 
 import io
 import json
@@ -25,11 +22,7 @@ _CORE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
 
 
 def meshes_of(name: str, content: bytes) -> Mapping[str, Corners]:
-    """The corners of the triangles of every mesh in a file, in the file's unit, shape (n, 3, 3), by the mesh's name.
-
-    Raises:
-        ValueError: the name does not end in ``.stl``, ``.3mf`` or ``.glb``.
-    """
+    """Return the triangles' corners of every mesh in a file, in its unit, shape (n, 3, 3), by the mesh's name."""
     if name.endswith(".stl"):
         return {"": read_stl(content)}
     if name.endswith(".3mf"):
@@ -40,13 +33,13 @@ def meshes_of(name: str, content: bytes) -> Mapping[str, Corners]:
 
 
 def read_stl(content: bytes) -> Corners:
-    """Binary STL."""
+    """Read binary STL."""
     count = int(np.frombuffer(content, "<u4", 1, _STL_HEADER - 4)[0])
     return np.frombuffer(content, _STL, count, _STL_HEADER)["corners"]
 
 
 def read_3mf(content: bytes) -> Corners:
-    """A 3MF file with one object."""
+    """Read a 3MF file with one object."""
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         root = ET.fromstring(archive.read("3D/3dmodel.model"))
     points = np.array([[float(v.attrib[axis]) for axis in "xyz"] for v in root.iter(f"{_CORE}vertex")])
@@ -55,7 +48,7 @@ def read_3mf(content: bytes) -> Corners:
 
 
 def read_glb(content: bytes) -> dict[str, Corners]:
-    """Binary glTF 2.0 whose meshes have one primitive of triangles each."""
+    """Read binary glTF 2.0 whose meshes have one primitive of triangles each."""
     length = int(np.frombuffer(content, "<u4", 1, _GLB_HEADER)[0])
     start = _GLB_HEADER + 8
     scene, data = json.loads(content[start : start + length]), memoryview(content)[start + length + 8 :]
@@ -76,13 +69,7 @@ def read_glb(content: bytes) -> dict[str, Corners]:
 
 
 def check(product: Product, part_files: Mapping[str, bytes], other_files: Mapping[str, bytes]) -> tuple[Check, Check]:
-    """Look at the meshes in the files of an export.
-
-    Args:
-        product: the parts.
-        part_files: the STL file of every unique part, whether it is to be written or not, by the part's name.
-        other_files: further STL, 3MF and GLB files by their paths.
-    """
+    """Look at the meshes in the files of an export."""
     corners = {kind.name: read_stl(part_files[kind.name]) for kind in product.unique}
     volumes = []
     for kind in product.unique:
@@ -99,7 +86,7 @@ def check(product: Product, part_files: Mapping[str, bytes], other_files: Mappin
 
 
 def _open_meshes(corners: Mapping[str, Corners]) -> list[str]:
-    """A sentence for every mesh that is not closed."""
+    """Return a sentence for every mesh that is not closed."""
     # An assembly has the triangles of the parts' own files, which need only one look.
     known: dict[bytes, str] = {}
     found = []

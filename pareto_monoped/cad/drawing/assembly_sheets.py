@@ -1,8 +1,7 @@
-"""The drawing of the assembly: the robot from its side, sections of hip and knee, balloons and the list of items.
+"""The drawing of the assembly: side view and sections, its units pulled apart, and its cables, with lists and balloons.
 
-Further sheets of the assembly: its units pulled apart along the joints' axis, so that every item has a balloon.
-
-The sheet of the cables: base and actuators from the front and from the left, with every corner of every cable.
+On the sheets with units pulled apart along the joints' axis every item has a balloon. The sheet of the cables shows
+base and actuators from the front and from the left, with every corner of every cable.
 """
 
 from collections.abc import Iterator, Sequence
@@ -38,24 +37,29 @@ from pareto_monoped.cad.product import Instance, Pose, Product, UniquePart, body
 from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.geometry.roles import Role, Visibility
 
-_ITEMS = 99
-"""Rows of the list of items in one column."""
-_CLEAR_MM2 = 12.0
-"""Area on paper of a region that a balloon's leader is sure to find (our own choice)."""
+_ITEMS = 99  # rows of the list of items in one column
+_CLEAR_MM2 = 12.0  # area on paper of a region that a balloon's leader is sure to find (our own choice)
 _SECTION_SCALE = 1.0
 _ABOVE_MM, _BELOW_MM = 130.0, 110.0
 """How far the hip's section reaches above and below its axis; the knee's reaches as far as 70 mm either way."""
 _KNEE_MM = 70.0
 _CAPTION_MM = 3.5
 _NOTES = ("The numbers are the rows of bom.csv.", "The sheets that follow show every item.")
+_EXPLODED_SCALE = 0.5  # at most: heads of M3 are then 2.8 mm wide
+_NO_WIDTH = (0.0, 1.0)  # what lies behind a part in the view is pulled apart from it too
+_CABLE_MM, _CORNER_MM = 0.7, 2.5
+_CABLE_SCALE = 1.0
+_CABLE_VIEWS = (("From the front", FROM_FRONT), ("From the left", FROM_LEFT))
+_CABLE_NOTES = (
+    "Lengths in mm, from the hip's axis in the middle of the leg: x forward, y left, z up. The thigh hangs down.",
+    "Path: along the middle line with rounded corners. Cut: with the tails at both ends, rounded up.",
+)
+
+Sheet = tuple[Paper, Size, float]
 
 
-def assembly_sheet(product: Product) -> tuple[Paper, Size, float]:
-    """The sheet of the assembly.
-
-    Raises:
-        ValueError: the robot fits no sheet.
-    """
+def assembly_sheet(product: Product) -> Sheet:
+    """Return the sheet of the assembly; ``ValueError`` if the robot fits no sheet."""
     side, section = side_view(product), leg_section(product)
     knee = -1000.0 * product.robot.design.thigh_length_m
     cuts = (
@@ -65,15 +69,14 @@ def assembly_sheet(product: Product) -> tuple[Paper, Size, float]:
     tables = _lists(product)
     for size in (A1, A0):
         for scale in (scale for scale in SCALES if scale <= _SECTION_SCALE):
-            views = _views(side, cuts, scale)
-            paper = compose(size, views, tables, _NOTES)
+            paper = compose(size, _views(side, cuts, scale), tables, _NOTES)
             if paper is not None:
                 return paper, size, scale
     raise ValueError("drawing of the assembly: the robot fits no sheet")
 
 
 def _views(side: Sequence[Seen], cuts: Sequence[tuple[str, list[Seen]]], scale: float) -> list[Paper]:
-    """Side view, and the sections below each other; each item has its balloon where it is seen best."""
+    """Return side view, and the sections below each other; each item has its balloon where it is seen best."""
     pointed: dict[int, int] = {}
     shown = [(side, scale), *((seen, _SECTION_SCALE) for _, seen in cuts)]
     for least in (_CLEAR_MM2, 0.0):
@@ -93,44 +96,27 @@ def _views(side: Sequence[Seen], cuts: Sequence[tuple[str, list[Seen]]], scale: 
 
 
 def _centred(papers: Sequence[Paper]) -> Paper:
-    """Papers below each other, with the middle of the column at the origin."""
+    """Return papers below each other, with the middle of the column at the origin."""
     column = Paper()
     y = 0.0
     for paper in papers:
         left, low, right, high = paper.box()
         column.lay(paper, -0.5 * (left + right), y - high)
         y -= high - low + 15.0
-    whole = column.box()
+    _, low, _, high = column.box()
     middle = Paper()
-    middle.lay(column, 0.0, -0.5 * (whole[1] + whole[3]))
+    middle.lay(column, 0.0, -0.5 * (low + high))
     return middle
 
 
 def _lists(product: Product) -> list[Paper]:
-    """The list of items, in the order of ``bom.csv``."""
-    rows = [
-        (
-            f"{k}",
-            f"{unique.count}",
-            unique.name.replace("_", " "),
-            _material(unique.part.grade, unique.part.material.name),
-        )
-        for k, unique in enumerate(product.unique, 1)
-    ]
+    rows = []
+    for k, unique in enumerate(product.unique, 1):
+        material = unique.part.grade or unique.part.material
+        rows.append((f"{k}", f"{unique.count}", unique.name.replace("_", " "), material.name))
     head = ("Item", "Count", "Part", "Material")
     chunks = [rows[k : k + _ITEMS] for k in range(0, len(rows), _ITEMS)]
     return [table("Items" if k == 0 else "Items, continued", head, chunk) for k, chunk in enumerate(chunks)]
-
-
-def _material(grade: object, name: str) -> str:
-    return str(getattr(grade, "name", name))
-
-
-_SCALE = 0.5
-"""At most: heads of M3 are then 2.8 mm wide."""
-_NO_WIDTH = (0.0, 1.0)  # what lies behind a part in the view is pulled apart from it too
-
-Sheet = tuple[Paper, Size, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -142,11 +128,7 @@ class _Group:
 
 
 def exploded_sheets(product: Product) -> list[Sheet]:
-    """As few sheets as hold all units; each item is shown and numbered once.
-
-    Raises:
-        ValueError: a unit fits no sheet.
-    """
+    """Return as few sheets as hold all units, each item once; ``ValueError`` if a unit fits no sheet."""
     views = list(_unit_views(product))
     sheets: list[Sheet] = []
     while views:
@@ -157,8 +139,8 @@ def exploded_sheets(product: Product) -> list[Sheet]:
 
 
 def _filled(views: Sequence[tuple[str, list[Seen]]]) -> tuple[int, Sheet]:
-    """The largest scale at which the first view fits a sheet, and with it as many more as fit."""
-    for scale in (scale for scale in SCALES if scale <= _SCALE):
+    """Return the largest scale at which the first view fits a sheet, and with it as many more as fit."""
+    for scale in (scale for scale in SCALES if scale <= _EXPLODED_SCALE):
         papers = [_view(name, seen, scale) for name, seen in views]
         for size in (A1, A0):
             for count in range(len(papers), 0, -1):
@@ -175,7 +157,7 @@ def _view(name: str, seen: Sequence[Seen], scale: float) -> Paper:
 
 
 def _unit_views(product: Product) -> Iterator[tuple[str, list[Seen]]]:
-    """The parts of each unit that no unit before it has, pulled apart, seen from the front with their axes upright."""
+    """Yield the parts that each unit adds, pulled apart, seen from the front with their axes upright."""
     frames = body_frames(product.robot, Pose(hip_rad=0.0, knee_rad=0.0))
     shown: set[int] = set()
     for unit in product.robot.units:
@@ -194,18 +176,13 @@ def _unit_views(product: Product) -> Iterator[tuple[str, list[Seen]]]:
             boxes.append([*corners[:, :3].min(axis=0), *corners[:, 3:].max(axis=0)])
         limits = np.array(boxes)
         limits[:, [2, 5]] = _NO_WIDTH
-        moves = pulled_apart(limits, axis=1)
-        yield (
-            unit.name.replace("_", " ").capitalize(),
-            [
-                Seen(item=group.item, region=shapely.affinity.translate(region, 0.0, move), cut=False)
-                for group, region, move in zip(groups, regions, moves, strict=True)
-            ],
-        )
+        moved = zip(groups, regions, pulled_apart(limits, axis=1), strict=True)
+        seen = [Seen(item=g.item, region=shapely.affinity.translate(r, 0.0, up), cut=False) for g, r, up in moved]
+        yield unit.name.replace("_", " ").capitalize(), seen
 
 
 def _groups(product: Product, unit: str, shown: set[int]) -> Iterator[_Group]:
-    """The items of a unit that are not shown yet, each with its instances at the first of its heights."""
+    """Yield the items of a unit that are not shown yet, each with its instances at the first of its heights."""
     found: dict[int, dict[float, list[tuple[Instance, UniquePart]]]] = {}
     for (instance, unique), kind in zip(product.placed(), product.kinds, strict=True):
         if instance.unit == unit and kind not in shown:
@@ -215,30 +192,15 @@ def _groups(product: Product, unit: str, shown: set[int]) -> Iterator[_Group]:
         yield _Group(item=item, members=tuple(next(iter(heights.values()))))
 
 
-_WIDE_MM = 0.7
-_NAME_MM = 2.5
-_LARGEST = 1.0
-_CABLE_SHEET_NOTES = (
-    "Lengths in mm, from the hip's axis in the middle of the leg: x forward, y left, z up. The thigh hangs down.",
-    "Path: along the middle line with rounded corners. Cut: with the tails at both ends, rounded up.",
-)
-
-
-def cable_sheet(product: Product) -> tuple[Paper, Size, float]:
-    """The sheet.
-
-    Raises:
-        ValueError: the robot fits no sheet.
-    """
+def cable_sheet(product: Product) -> Sheet:
+    """Return the sheet of the cables; ``ValueError`` if the robot fits no sheet."""
     made = cables(product.robot)
-    regions = {name: list(_seen(product, axes)) for name, axes in _VIEWS}
+    regions = {name: list(_near_cables(product, axes)) for name, axes in _CABLE_VIEWS}
     tables = _tables(made)
-    notes = (
-        *_CABLE_SHEET_NOTES,
-        *(f"{cable.warning[0].upper()}{cable.warning[1:]}." for cable in made if cable.warning),
-    )
-    for scale in (scale for scale in SCALES if scale <= _LARGEST):
-        views = [_cable_sheet_view(name, regions[name], axes, made, scale) for name, axes in _VIEWS]
+    warnings = [f"{cable.warning[0].upper()}{cable.warning[1:]}." for cable in made if cable.warning]
+    notes = (*_CABLE_NOTES, *warnings)
+    for scale in (scale for scale in SCALES if scale <= _CABLE_SCALE):
+        views = [_cable_view(name, regions[name], axes, made, scale) for name, axes in _CABLE_VIEWS]
         for size in (A2, A1):
             paper = compose(size, views, tables, notes)
             if paper is not None:
@@ -246,11 +208,8 @@ def cable_sheet(product: Product) -> tuple[Paper, Size, float]:
     raise ValueError("drawing of the cables: the robot fits no sheet")
 
 
-_VIEWS = (("From the front", FROM_FRONT), ("From the left", FROM_LEFT))
-
-
-def _seen(product: Product, axes: NDArray[np.float64]) -> Iterator[Seen]:
-    """Outlines of what stands on the base or belongs to an actuator, all of them, with the leg hanging down."""
+def _near_cables(product: Product, axes: NDArray[np.float64]) -> Iterator[Seen]:
+    """Yield whole outlines of what stands on the base or belongs to an actuator, with the leg hanging down."""
     frames = body_frames(product.robot, Pose(hip_rad=0.0, knee_rad=0.0))
     units = {unit.name for unit in product.robot.units if unit.body == "base"}
     for (instance, unique), item in zip(product.placed(), product.kinds, strict=True):
@@ -261,39 +220,28 @@ def _seen(product: Product, axes: NDArray[np.float64]) -> Iterator[Seen]:
         yield Seen(item=item, region=outline_of(body.project()), cut=False)
 
 
-def _cable_sheet_view(
+def _cable_view(
     name: str, seen: Sequence[Seen], axes: NDArray[np.float64], made: Sequence[Cable], scale: float
 ) -> Paper:
-    """The outlines with the cables over them, and a name at every corner."""
+    """Return the outlines with the cables over them, and a name at every corner."""
     paper = drawn(seen, scale)
     tags = []
     for letter, cable in zip(ascii_uppercase, made, strict=False):
         line = rounded(cable.points_mm, cable.bend_radius_mm) @ axes[:2].T * scale
-        paper.line(line, width_mm=_WIDE_MM)
+        paper.line(line, width_mm=_CABLE_MM)
         for k, (x, y) in enumerate((cable.points_mm @ axes[:2].T).tolist(), 1):
-            tags.append(Tag(text=f"{letter}{k}", x=x, y=y, radius=0.0, height_mm=_NAME_MM))
+            tags.append(Tag(text=f"{letter}{k}", x=x, y=y, radius=0.0, height_mm=_CORNER_MM))
     place_tags(paper, tags, scale)
     return captioned(paper, name, scale)
 
 
 def _tables(made: Sequence[Cable]) -> list[Paper]:
-    """What is cut, and the corners."""
-    cut = [
-        (
-            letter,
-            f"{cable.start} to {cable.end}",
-            f"{cable.wires} x {cable.designation}",
-            f"{cable.length_mm:.0f}",
-            f"{cable.cut_mm:g}",
-            f"{cable.bend_radius_mm:.0f}",
-        )
-        for letter, cable in zip(ascii_uppercase, made, strict=False)
-    ]
-    corners = [
-        (f"{letter}{k}", *(number(round(value, 1)) for value in point), what)
-        for letter, cable in zip(ascii_uppercase, made, strict=False)
-        for k, (point, what) in enumerate(zip(cable.points_mm.tolist(), cable.notes, strict=True), 1)
-    ]
+    cut, corners = [], []
+    for letter, cable in zip(ascii_uppercase, made, strict=False):
+        what = (f"{cable.start} to {cable.end}", f"{cable.wires} x {cable.designation}")
+        cut.append((letter, *what, f"{cable.length_mm:.0f}", f"{cable.cut_mm:g}", f"{cable.bend_radius_mm:.0f}"))
+        for k, (point, note) in enumerate(zip(cable.points_mm.tolist(), cable.notes, strict=True), 1):
+            corners.append((f"{letter}{k}", *(number(round(value, 1)) for value in point), note))
     return [
         table("Cables", ("Cable", "From, to", "Wires", "Path", "Cut", "Bend radius"), cut),
         table("Corners", ("Corner", "x", "y", "z", "What"), corners),

@@ -1,9 +1,8 @@
-"""The assembly seen from its side, and cut along the leg with straight joints, from the parts' meshes.
+"""The assembly from its side, or cut along the leg with straight joints, from the parts' meshes; balloons of items.
 
-Balloons of items beside a view, in a column on either side, each with a leader to its part (ISO 6433).
-
-On exploded views a leader crosses no other part: where it begins on its part, and on which side its balloon stands, are
-chosen by exchanges that lower the number of crossings until none does.
+Balloons stand in a column on either side of a view, each with a leader to its part (ISO 6433). On exploded views a
+leader crosses no other part: where it begins on its part, and on which side its balloon stands, are chosen by exchanges
+that lower the number of crossings until none does.
 """
 
 import math
@@ -38,6 +37,17 @@ FROM_FRONT_LYING = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
 """The same turned by a right angle: the joints' axes are upright, the leg points to the right."""
 
 _CAPTION_MM = 3.5  # height of the names of views
+BALLOON_MM = 4.0  #: Radius of an item's balloon.
+_PITCH_MM = 9.5
+_TEXT_MM = 2.5
+_COLUMN_MM = 14.0
+_RIM_MM = 3.0  # how far within a part's edge a leader may end (our own choice)
+_PLACES = 2
+"""Along a part at which a leader may end: at its ends. Five take three times as long and leave as many crossings."""
+_CROSSING_MM = 1000.0  # length of leader that one crossing less is worth (our own choice: more than any leader has)
+_ROUNDS = 4
+
+Point = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,7 +60,7 @@ class Seen:
 
 
 def side_view(product: Product) -> list[Seen]:
-    """Visible regions of the robot in its pose, seen from the right, the nearest first."""
+    """Return the visible regions of the robot in its pose, seen from the right, the nearest first."""
     shown = []
     for (instance, unique), item in zip(product.placed(), product.kinds, strict=True):
         if instance.part.visibility is Visibility.INSIDE:
@@ -69,7 +79,7 @@ def side_view(product: Product) -> list[Seen]:
 
 
 def leg_section(product: Product) -> list[Seen]:
-    """Regions of the robot with straight joints on the plane through all joint axes, seen from the front."""
+    """Return regions of the robot with straight joints on the plane through all joint axes, seen from the front."""
     frames = body_frames(product.robot, Pose(hip_rad=0.0, knee_rad=0.0))
     found = []
     for (instance, unique), item in zip(product.placed(), product.kinds, strict=True):
@@ -84,7 +94,7 @@ def leg_section(product: Product) -> list[Seen]:
 
 
 def drawn(seen: Sequence[Seen], scale: float) -> Paper:
-    """The regions on paper, cut ones hatched, neighbouring parts in different directions."""
+    """Return the regions on paper, cut ones hatched, neighbouring parts in different directions."""
     paper = Paper()
     for one in seen:
         region = shapely.transform(one.region, lambda points: points * scale)
@@ -100,14 +110,14 @@ def drawn(seen: Sequence[Seen], scale: float) -> Paper:
 
 
 def within(seen: Sequence[Seen], low_mm: float, high_mm: float) -> list[Seen]:
-    """The regions of a view between two heights."""
+    """Return the regions of a view between two heights."""
     band = shapely.box(-1e5, low_mm, 1e5, high_mm)
     clipped = [replace(one, region=one.region.intersection(band)) for one in seen]
     return [one for one in clipped if not one.region.is_empty]
 
 
 def areas(seen: Sequence[Seen]) -> dict[int, float]:
-    """The largest visible region of each item in mm2 of the robot."""
+    """Return the largest visible region of each item in mm2 of the robot."""
     found: dict[int, float] = {}
     for one in seen:
         found[one.item] = max(found.get(one.item, 0.0), max((p.area for p in polygons(one.region)), default=0.0))
@@ -115,14 +125,14 @@ def areas(seen: Sequence[Seen]) -> dict[int, float]:
 
 
 def to_view(axes: Floats) -> Floats:
-    """From the assembly's frame to a view's."""
+    """Return the matrix from the assembly's frame to a view's."""
     matrix = np.eye(4)
     matrix[:3, :3] = axes
     return matrix
 
 
 def outline_of(section: m3.CrossSection) -> BaseGeometry:
-    """A region of the plane as a Shapely geometry."""
+    """Return a region of the plane as a Shapely geometry."""
     rings = [np.asarray(ring) for ring in section.to_polygons() if len(ring) > 2]
     # Manifold gives outer boundaries anticlockwise and holes clockwise; even-odd filling needs no order.
     region: BaseGeometry = shapely.Polygon()
@@ -132,28 +142,12 @@ def outline_of(section: m3.CrossSection) -> BaseGeometry:
 
 
 def captioned(paper: Paper, name: str, scale: float) -> Paper:
-    """A finished view with its name and scale over it, and its middle, without these, at y = 0."""
+    """Return a finished view with its name and scale over it, and its middle, without these, at y = 0."""
     left, low, right, high = paper.box()
     paper.text(f"{name}, {scale_text(scale)}", 0.5 * (left + right), high + 6.0, height_mm=_CAPTION_MM, align="centre")
     centred = Paper()
     centred.lay(paper, 0.0, -0.5 * (low + high))
     return centred
-
-
-BALLOON_MM = 4.0
-"""Radius of an item's balloon."""
-_PITCH_MM = 9.5
-_TEXT_MM = 2.5
-_COLUMN_MM = 14.0
-_RIM_MM = 3.0
-"""How far within a part's edge a leader may end (our own choice)."""
-_PLACES = 2
-"""Along a part at which a leader may end: at its ends. Five take three times as long and leave as many crossings."""
-_CROSSING_MM = 1000.0
-"""Length of leader that one crossing less is worth (our own choice: more than any leader has)."""
-_ROUNDS = 4
-
-Point = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -165,14 +159,7 @@ class _End:
 
 
 def balloons(paper: Paper, seen: Sequence[Seen], scale: float, items: Sequence[int]) -> None:
-    """Balloons of a dense view: leaders into the largest visible region of their parts, none crosses another.
-
-    Args:
-        paper: the view.
-        seen: its regions.
-        scale: paper over robot.
-        items: which items to point at; all of them are seen.
-    """
+    """Draw balloons of a dense view: leaders into the largest visible region of their parts, none crosses another."""
     points = {}
     for item in items:
         region = max((p for one in seen if one.item == item for p in polygons(one.region)), key=lambda p: p.area)
@@ -185,23 +172,22 @@ def balloons(paper: Paper, seen: Sequence[Seen], scale: float, items: Sequence[i
 
 
 def clear_balloons(paper: Paper, seen: Sequence[Seen], scale: float) -> None:
-    """Balloons of an exploded view, one for each region, with leaders that cross no other part if there is a way.
-
-    Args:
-        paper: the view.
-        seen: its regions, one for each item.
-        scale: paper over robot.
-    """
+    """Draw balloons of an exploded view, one per region, with leaders that cross no other part if there is a way."""
     regions = {one.item: shapely.affinity.scale(one.region, scale, scale, origin=(0.0, 0.0)) for one in seen}
     choices = {item: list(_ends(region)) for item, region in regions.items()}
     columns = _columns(paper)
     middle = 0.5 * sum(columns)
-    ends = {item: min(found, key=lambda end: _from_column(end, columns)) for item, found in choices.items()}
+
+    def away(end: _End) -> float:
+        return abs(columns[end.to_right] - end.tip[0])
+
+    ends = {item: min(found, key=away) for item, found in choices.items()}
     tree, order = shapely.STRtree(list(regions.values())), list(regions)
     cost = _cost(ends, columns, tree, order)
     for _ in range(_ROUNDS):
         before = cost
-        for item in sorted(_crossing(ends, columns, tree, order), key=lambda item: abs(ends[item].tip[0] - middle)):
+        crossing = set(_hits(ends, columns, tree, order)[0])
+        for item in sorted(crossing, key=lambda item: abs(ends[item].tip[0] - middle)):
             for end in choices[item]:
                 changed = ends | {item: end}
                 lower = _cost(changed, columns, tree, order)
@@ -213,17 +199,12 @@ def clear_balloons(paper: Paper, seen: Sequence[Seen], scale: float) -> None:
 
 
 def _columns(paper: Paper) -> tuple[float, float]:
-    """Where the columns of balloons stand."""
     left, _, right, _ = paper.box()
     return left - _COLUMN_MM, right + _COLUMN_MM
 
 
-def _from_column(end: _End, columns: tuple[float, float]) -> float:
-    return abs(columns[end.to_right] - end.tip[0])
-
-
 def _ends(region: BaseGeometry) -> Iterator[_End]:
-    """Places within a part at its left and its right end, in the middle, above and below."""
+    """Yield places within a part at its left and its right end, in the middle, above and below."""
     left, low, right, high = region.bounds
     rim = min(_RIM_MM, 0.5 * (right - left))
     for start in np.linspace(left, right - rim, _PLACES):
@@ -240,7 +221,7 @@ def _ends(region: BaseGeometry) -> Iterator[_End]:
 
 
 def _placed(ends: Mapping[int, _End], columns: tuple[float, float]) -> dict[int, Point]:
-    """The middle of every balloon: near the height of its leader's end, in an order in which no leaders cross."""
+    """Return the middle of every balloon, near the height of its leader's end; no leaders cross."""
     found: dict[int, Point] = {}
     for to_right, x in zip((False, True), columns, strict=True):
         tips = {item: end.tip for item, end in ends.items() if end.to_right is to_right}
@@ -254,17 +235,11 @@ def _placed(ends: Mapping[int, _End], columns: tuple[float, float]) -> dict[int,
 def _hits(
     ends: Mapping[int, _End], columns: tuple[float, float], tree: shapely.STRtree, order: Sequence[int]
 ) -> tuple[list[int], float]:
-    """The items whose leaders cross other parts, once for each crossing, and the length of all leaders."""
+    """Return the items whose leaders cross other parts, once per crossing, and the length of all leaders."""
     placed = _placed(ends, columns)
     lines = shapely.linestrings([[placed[item], ends[item].tip] for item in order])
     own, other = tree.query(lines, predicate="intersects")
     return [order[k] for k in own[own != other].tolist()], float(shapely.length(lines).sum())
-
-
-def _crossing(
-    ends: Mapping[int, _End], columns: tuple[float, float], tree: shapely.STRtree, order: Sequence[int]
-) -> set[int]:
-    return set(_hits(ends, columns, tree, order)[0])
 
 
 def _cost(ends: Mapping[int, _End], columns: tuple[float, float], tree: shapely.STRtree, order: Sequence[int]) -> float:
@@ -278,7 +253,7 @@ def _draw(paper: Paper, placed: Mapping[int, Point], ends: Mapping[int, _End]) -
 
 
 def _uncrossed(order: Sequence[int], heights: Sequence[float], x: float, points: Mapping[int, Point]) -> list[int]:
-    """Items in an order in which no two leaders cross: exchanges of two that shorten them, until none does."""
+    """Return items in an order in which no two leaders cross: exchanges of two that shorten them, until none does."""
     items = list(order)
 
     def long(k: int, item: int) -> float:
@@ -297,7 +272,7 @@ def _uncrossed(order: Sequence[int], heights: Sequence[float], x: float, points:
 
 
 def _balloon(paper: Paper, item: int, at: Point, tip: Point) -> None:
-    """An item's number in a circle, with a leader that ends in a dot within the part."""
+    """Draw an item's number in a circle, with a leader that ends in a dot within the part."""
     way = np.array(tip) - np.array(at)
     start = np.array(at) + way / np.hypot(*way) * BALLOON_MM
     paper.circle(*at, BALLOON_MM, width_mm=0.35)

@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 
 from pareto_monoped.cad.drawing.paper import TIMES
-from pareto_monoped.cad.shape.outlines import contours, polygon
+from pareto_monoped.cad.shape.outlines import centres_mm, contours, polygon
 from pareto_monoped.geometry.features import Cone, Hole, Mouth
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism
@@ -29,8 +29,7 @@ class Bore:
     """Holes of one circle or pattern, from one height to another."""
 
     shape: Circle | Pattern  #: where they are
-    #: low, high: heights of their ends
-    low: float
+    low: float  #: height of their lower end
     high: float
     through: bool  #: whether they go through all of the part's material there
     feature: Hole | None  #: what is cut into them, if the part says so
@@ -49,9 +48,7 @@ class Bore:
     @property
     def centres(self) -> list[tuple[float, float]]:
         """Where their axes are."""
-        if isinstance(self.shape, Pattern):
-            return self.shape.centres_mm()
-        return [(float(self.shape.x_mm), float(self.shape.y_mm))]
+        return centres_mm(self.shape)
 
     @property
     def place_mm(self) -> float | None:
@@ -95,7 +92,7 @@ class Bore:
             yield f"{text}{', both sides' if len(sides) == 2 else '' if True in sides else ', far side'}"
 
     def _ends_at_mouth(self, above: bool) -> bool:
-        """Whether these holes end where the feature does: a narrower step of the same feature has no cone."""
+        """Return whether these holes end where the feature does: a narrower step of the same feature has no cone."""
         assert self.feature is not None
         end = float(self.feature.high_mm) - self.high if above else float(self.feature.low_mm) - self.low
         return abs(end) < _SAME_MM
@@ -109,7 +106,7 @@ class Bore:
 
 
 def bores(part: Part, *, on_axis: bool = False) -> tuple[Bore, ...]:
-    """The round holes of a part beside its axis, largest circle first; those on the axis too if asked for."""
+    """Return the round holes of a part beside its axis, largest circle first; those on the axis too if asked for."""
     found: dict[Circle | Pattern, list[tuple[float, float]]] = {}
     for prism in sorted(part.prisms, key=lambda p: float(p.z0_mm)):
         for hole in prism.holes:
@@ -129,23 +126,17 @@ def _bore(part: Part, shape: Circle | Pattern, low: float, high: float) -> Bore:
     # A tapping drill may have the diameter of a fitted hole.
     threaded = feature is not None and feature.thread is not None
     fits = () if threaded else (fit for fit in part.fits if fit.holds(2.0 * float(shape.radius_mm)))
-    return Bore(
-        shape=shape,
-        low=low,
-        high=high,
-        through=_through(part, shape, low, high),
-        feature=feature,
-        fit=next(iter(fits), None),
-    )
+    through, fit = _through(part, shape, low, high), next(iter(fits), None)
+    return Bore(shape=shape, low=low, high=high, through=through, feature=feature, fit=fit)
 
 
 def chamfer_text(along: float, across_mm: float) -> str:
-    """Such as ``0.5 x 45°``; the angle is measured from the axis."""
+    """Return a text such as ``0.5 x 45°``; the angle is measured from the axis."""
     return f"{number(along)} {TIMES} {number(round(float(np.degrees(np.arctan2(across_mm, along))), 1))}°"
 
 
 def number(value: float) -> str:
-    """A length or angle as it is written on a drawing: to a micrometre, without useless zeros."""
+    """Return a length or angle as it is written on a drawing: to a micrometre, without useless zeros."""
     text = f"{value:.3f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
@@ -155,7 +146,6 @@ def _central(shape: Circle | Pattern) -> bool:
 
 
 def _feature(part: Part, shape: Circle | Pattern, low: float, high: float) -> Hole | None:
-    """The part's feature that these holes belong to."""
     for feature in part.features:
         if not isinstance(feature, Hole) or shape not in feature.shapes:
             continue
@@ -165,8 +155,8 @@ def _feature(part: Part, shape: Circle | Pattern, low: float, high: float) -> Ho
 
 
 def _through(part: Part, shape: Circle | Pattern, low: float, high: float) -> bool:
-    """Whether no material stands before either end of a hole."""
-    (x, y), *_ = shape.centres_mm() if isinstance(shape, Pattern) else [(float(shape.x_mm), float(shape.y_mm))]
+    """Return whether no material stands before either end of a hole."""
+    x, y = centres_mm(shape)[0]
     reach = 0.98 * float(shape.radius_mm)  # a narrower hole beyond leaves a step
     points = [(x, y), (x + reach, y), (x - reach, y), (x, y + reach), (x, y - reach)]
     return not any(
@@ -178,8 +168,6 @@ def _through(part: Part, shape: Circle | Pattern, low: float, high: float) -> bo
 
 
 def _covers(prism: Prism, x: float, y: float) -> bool:
-    """Whether a prism has material at a point."""
-
     def within(shape: Shape) -> bool:
         return any(shapely.contains_xy(shapely.Polygon(polygon(contour)), x, y) for contour in contours(shape))
 

@@ -1,4 +1,4 @@
-"""The data table of a gear: what its teeth are cut and measured by. Millimetres, radians.
+"""Tables on a drawing: what a gear's teeth are cut and measured by, and the toleranced faces. Millimetres, radians.
 
 Base tangent length and dimension between pins after ISO 21771-2; x = 0 unless the gear is shifted:
 
@@ -6,8 +6,6 @@ Base tangent length and dimension between pins after ISO 21771-2; x = 0 unless t
     inv a_M = inv a - d / (z m cos a) + (pi / 2 + 2 x tan a + A / m) / z,   M = z m cos a / cos a_M - d  (even z, ring)
 
 with the allowance A of the tooth's thickness (external) or of the space's width (internal) along the pitch circle.
-
-The table of fits on a drawing: limits, finish and place of each toleranced face.
 """
 
 from collections.abc import Sequence
@@ -31,8 +29,16 @@ from pareto_monoped.geometry.making import (
     thickness_tolerance_mm,
 )
 
-_PIN_MODULES = 1.68
-"""Diameter of measuring pins over module, so that they touch near the pitch circle (DIN 3960)."""
+_PIN_MODULES = 1.68  # diameter of measuring pins over module, so that they touch near the pitch circle (DIN 3960)
+DATUM = "A"
+_SEAT_RA, _FIT_RA, _RACEWAY_RA = "0.8", "1.6", f"{RACEWAY_RA_UM:g}"
+"""Arithmetical mean height in micrometres: bearing makers ask 0.8 of seats up to 80 mm, and 1.6 suffices elsewhere."""
+_COAXIAL = "Ø0.02"
+"""Zone of the axes of seats: about one tolerance of grade 6 at 30 to 50 mm, 16 micrometres (our own choice)."""
+_SQUARE = "0.02"
+"""Zone of the faces that locate a part along its axis. Makers of bearings ask run-out of shoulders of IT5 to IT6:
+13 to 19 micrometres at 50 to 80 mm."""
+_SHOULDERS = "shoulders"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,13 +47,12 @@ class Span:
 
     count: int  #: teeth that it spans; 0 for a measure between pins
     pin_mm: float  #: diameter of the pins; 0 for a base tangent
-    #: least_mm, greatest_mm: limits
     least_mm: float
     greatest_mm: float
 
 
 def spanned_teeth(teeth: int, pressure_angle_rad: float, shift: float = 0.0) -> int:
-    """Teeth over which the base tangent touches x modules off the pitch circle.
+    """Return over how many teeth the base tangent touches x modules off the pitch circle.
 
     z (tan a_v - inv a - 2 x tan a / z) / pi + 1/2, rounded, with cos(a_v) = z cos(a) / (z + 2 x) (ISO 21771).
     """
@@ -58,14 +63,14 @@ def spanned_teeth(teeth: int, pressure_angle_rad: float, shift: float = 0.0) -> 
 
 
 def base_tangent_mm(gear: ExternalGear, count: int, *, allowance_mm: float) -> float:
-    """Length over ``count`` teeth whose thickness differs from half the pitch by ``allowance_mm``."""
+    """Return the length over ``count`` teeth whose thickness differs from half the pitch by ``allowance_mm``."""
     m, z, a = float(gear.module_mm), int(gear.teeth), gear.pressure_angle_rad
     along = m * np.cos(a) * (np.pi * (count - 0.5) + z * (np.tan(a) - a)) + 2.0 * float(gear.shift) * m * np.sin(a)
     return float(along + allowance_mm * np.cos(a))
 
 
 def between_pins_mm(gear: InternalGear, pin_mm: float, *, allowance_mm: float) -> float:
-    """Distance between two pins in opposite spaces (or nearly so) that are wider by ``allowance_mm``."""
+    """Return the distance of two pins in opposite spaces (or nearly so) that are wider by ``allowance_mm``."""
     m, z, a = float(gear.module_mm), int(gear.teeth), gear.pressure_angle_rad
     width = 0.5 * np.pi + 2.0 * float(gear.shift) * np.tan(a) + allowance_mm / m
     angle = _inverse_involute(np.tan(a) - a - pin_mm / (z * m * np.cos(a)) + width / z)
@@ -76,16 +81,10 @@ def between_pins_mm(gear: InternalGear, pin_mm: float, *, allowance_mm: float) -
 def measure(
     gear: ExternalGear | InternalGear, *, series: int = GENERAL_SERIES, hole: bool = False, play_mm: float = 0.0
 ) -> Span:
-    """What to measure, with its limits: the drawn teeth have the most material, so backlash is at least as drawn.
+    """Return what to measure; the drawn teeth have the most material, so backlash is at least as drawn.
 
-    Args:
-        gear: its teeth.
-        series: of the tolerance of their thickness, DIN 3967.
-        hole: whether an external gear's outline is that of a hole, which a plug of these measures fits.
-        play_mm: by how much the spaces of such a hole are at least wider than drawn.
-
-    Raises:
-        ValueError: a gear larger than the table of tolerances.
+    ``series`` is that of the tooth thickness tolerance (DIN 3967), which ends at some diameter (``ValueError``). With
+    ``hole`` the outline is that of a hole for a plug of these measures, with ``play_mm`` wider spaces at least.
     """
     diameter = 2.0 * float(gear.pitch_radius_mm)
     if diameter > LARGEST_PITCH_DIAMETER_MM:
@@ -110,28 +109,20 @@ def gear_rows(
     making: ToothMaking | None = None,
     hardness: str = "",
 ) -> list[tuple[str, str]]:
-    """The rows of the table: what, and its value.
-
-    Args:
-        gear: its teeth.
-        accuracy_class: ISO 1328-1, where ``making`` says nothing.
-        hole: see ``measure``.
-        making: how the teeth are made, if that is known.
-        hardness: of their flanks.
-    """
+    """Return the rows of the table; ``accuracy_class`` (ISO 1328-1) counts where ``making`` says nothing."""
     spline = hole and isinstance(gear, ExternalGear)
     play = 2.0 * float(gear.backlash_mm) if making is None or making.play_mm is None else making.play_mm
     grade = accuracy_class if making is None else making.accuracy_class
     series = RATED_SERIES if (accuracy_class if making is None else making.quality) else GENERAL_SERIES
-    loss = _loss_mm(gear, making, series) if making else 0.0
+    loss = 0.0
+    if making:  # at most, where all thicknesses are at the end of their tolerance
+        mates = (thickness_tolerance_mm(diameter, series) for diameter in making.mates_mm)
+        loss = float(thickness_tolerance_mm(2.0 * float(gear.pitch_radius_mm), series) + max(mates))
     span = measure(gear, series=series, hole=spline, play_mm=play)
     kind = "internal" if isinstance(gear, InternalGear) else "hole of a splined shaft" if spline else "external"
     limits = f"{span.least_mm:.3f} to {span.greatest_mm:.3f}"
-    measured = (
-        (f"Between pins of Ø{number(span.pin_mm)}", limits)
-        if span.pin_mm
-        else (f"Base tangent length W over {span.count} teeth{' of a plug' if spline else ''}", limits)
-    )
+    over = f"Base tangent length W over {span.count} teeth{' of a plug' if spline else ''}"
+    measured = (f"Between pins of Ø{number(span.pin_mm)}" if span.pin_mm else over, limits)
     return [
         (f"Teeth, {kind}", f"{int(gear.teeth)}"),
         ("Module", number(float(gear.module_mm))),
@@ -151,14 +142,8 @@ def gear_rows(
     ]
 
 
-def _loss_mm(gear: ExternalGear | InternalGear, making: ToothMaking, series: int) -> float:
-    """By how much a pair's backlash grows where both thicknesses are at the end of their tolerance; the worst mate."""
-    mates = (thickness_tolerance_mm(diameter, series) for diameter in making.mates_mm)
-    return float(thickness_tolerance_mm(2.0 * float(gear.pitch_radius_mm), series) + max(mates))
-
-
 def _making_rows(making: ToothMaking, hardness: str) -> list[tuple[str, str]]:
-    """What the rating of the teeth takes for granted; of splines, only how they are made."""
+    """Return what the rating of the teeth takes for granted; of splines, only how they are made."""
     if not making.quality:
         return [("Making", making.making)]
     layer = {"CHD": "Case depth CHD (ISO 18203), finished", "NHD": "Nitriding depth NHD (ISO 18203)"}
@@ -175,7 +160,7 @@ def _making_rows(making: ToothMaking, hardness: str) -> list[tuple[str, str]]:
 
 @lru_cache(maxsize=256)
 def _inverse_involute(value: float) -> float:
-    """The angle whose involute function is ``value``, by Newton's method."""
+    """Return the angle whose involute function is ``value``, by Newton's method."""
     angle = float(np.cbrt(3.0 * value))  # inv a = a^3 / 3 + ...
     for _ in range(30):
         step = (np.tan(angle) - angle - value) / np.tan(angle) ** 2
@@ -185,29 +170,17 @@ def _inverse_involute(value: float) -> float:
     return angle
 
 
-DATUM = "A"
-_SEAT_RA, _FIT_RA, _RACEWAY_RA = "0.8", "1.6", f"{RACEWAY_RA_UM:g}"
-"""Arithmetical mean height in micrometres: bearing makers ask 0.8 of seats up to 80 mm, and 1.6 suffices elsewhere."""
-_COAXIAL = "Ø0.02"
-"""Zone of the axes of seats: about one tolerance of grade 6 at 30 to 50 mm, 16 micrometres (our own choice)."""
-_SQUARE = "0.02"
-"""Zone of the faces that locate a part along its axis. Makers of bearings ask run-out of shoulders of IT5 to IT6:
-13 to 19 micrometres at 50 to 80 mm."""
-_SHOULDERS = "shoulders"
-
-
 def datum_fit(fits: Sequence[Fit]) -> Fit | None:
-    """The fit whose axis positions refer to: the largest seat, or the largest of all."""
+    """Return the fit whose axis positions refer to: the largest seat, or the largest of all."""
     seats = [fit for fit in fits if fit.seat] or list(fits)
     return max(seats, key=lambda fit: float(fit.diameter_mm), default=None)
 
 
 def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
-    """A row for each fit, and one for the faces square to the datum's axis if it carries a bearing; None without fits.
+    """Return a row per fit, and one for the faces square to the datum's axis if it carries a bearing.
 
-    Args:
-        fits: of the part.
-        alone: for each, whether its face stands around the part's axis; patterns have their place in their callouts.
+    ``alone`` tells of each fit whether its face stands around the part's axis; patterns have their place in their
+    callouts. Without fits there is no table.
     """
     if not fits:
         return None
@@ -248,6 +221,5 @@ def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
 
 
 def _limits(fit: Fit) -> str:
-    """Upper and lower deviation in millimetres."""
     found = limits(float(fit.diameter_mm), fit.zone)
     return " / ".join(f"{deviation:+.3f}" if deviation else "0" for deviation in (found.upper_mm, found.lower_mm))

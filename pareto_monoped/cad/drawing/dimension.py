@@ -1,10 +1,7 @@
-"""Dimensions after ISO 129-1, placed by rule so that none stands on another: ladders, stacks, leaders, frames.
+"""Dimensions after ISO 129-1 and names of features, placed by rule so that none stands on another.
 
-All lengths are millimetres of paper.
-
-Names beside what they name, placed by a rule: where their boxes meet no line, no arrow and no other text.
-
-Places are tried outwards; a name that stands far off has a leader, which meets no text and no other leader.
+All lengths are millimetres of paper. Names stand where their boxes meet no line, no arrow and no other text. Places are
+tried outwards; a name that stands far off has a leader, which meets no text and no other leader.
 """
 
 from collections.abc import Sequence
@@ -17,21 +14,27 @@ from numpy.typing import NDArray
 
 from pareto_monoped.cad.drawing.paper import ARROW_MM, LETTER_MM, Align, Label, Paper, width_mm
 
+Floats = NDArray[np.float64]
 Side = Literal["below", "above", "left", "right"]
 
-GAP_MM = 1.0
-"""From a feature to the beginning of its extension line."""
-OVERSHOOT_MM = 1.5
-"""Of an extension line beyond the dimension line."""
+GAP_MM = 1.0  #: From a feature to the beginning of its extension line.
+OVERSHOOT_MM = 1.5  #: Of an extension line beyond the dimension line.
 FIRST_MM, PITCH_MM = 9.0, 7.0
 """From the outline to the first dimension line, and from line to line (ISO 129-1: not less than about 10 and 7)."""
-SLOT_MM = 4.2
-"""Least distance of parallel texts of 2.5 mm."""
-_BESIDE_MM = 1.2
-"""From an upright dimension line to its text, which stands clear of the arrows."""
+SLOT_MM = 4.2  #: Least distance of parallel texts of 2.5 mm.
+_BESIDE_MM = 1.2  # from an upright dimension line to its text, which stands clear of the arrows
 _JOG_MM, _TAIL_MM = 3.0, 1.5
 _TICK_MM = 1.2
 _ORIGIN_MM = 0.9
+FRAME_MM = 5.0  #: Height of a tolerance frame: twice the lettering's (ISO 1101).
+_NEAR_MM = 4.0  # names that stand off farther have a leader
+_REACHES_MM = np.array([1.0, 2.0, 3.5, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 60, 80, 110, 150])
+_ANGLES = np.radians([45.0, 135, 225, 315, 0, 90, 180, 270, 22.5, 67.5, 112.5, 157.5, 202.5, 247.5, 292.5, 337.5])
+_WAYS = np.array([[np.cos(angle), np.sin(angle)] for angle in _ANGLES])
+_ALIGNS: tuple[Align, ...] = tuple("left" if x > 0.3 else "right" if x < -0.3 else "centre" for x in _WAYS[:, 0])
+"""Directions in which a name may stand, and how it is then aligned."""
+_CLEAR_MM, _APART_MM = 0.2, 0.4  # least distance of a name from lines and from other texts
+_LEADER_GAP_MM = 0.3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,10 +48,9 @@ class Mark:
 
 
 def spread(at: Sequence[float], pitch: float) -> list[float]:
-    """Places near the wanted ones, which ascend, at least ``pitch`` apart; the sum of squared moves is least.
+    """Return places near the wanted ones, which ascend, at least ``pitch`` apart; the sum of squared moves is least.
 
-    With the multiples of the pitch taken off, the places need only ascend, which pooling neighbours achieves (isotonic
-    regression).
+    With the multiples of the pitch taken off, the places need only ascend: pooling neighbours (isotonic regression).
     """
     pools: list[tuple[float, int]] = []
     for k, wanted in enumerate(at):
@@ -61,14 +63,10 @@ def spread(at: Sequence[float], pitch: float) -> list[float]:
 
 
 def ladder(paper: Paper, marks: Sequence[Mark], side: Side, level: float, *, origin: float | None = None) -> None:
-    """Running dimensions: each feature has an extension line to a row of texts that keep their distance.
+    """Draw running dimensions: each feature has an extension line to a row of texts that keep their distance.
 
-    Args:
-        paper: to draw on.
-        marks: the features.
-        side: where the row stands.
-        level: across the ladder, where the extension lines may begin to bend.
-        origin: along the ladder, where the lengths begin; a dimension line runs from there through all marks.
+    ``level`` is where, across the ladder, the extension lines may begin to bend. ``origin`` is where, along it, the
+    lengths begin; a dimension line runs from there through all marks.
     """
     outwards = 1.0 if side in ("above", "right") else -1.0
     flat = side in ("above", "below")
@@ -88,21 +86,15 @@ def ladder(paper: Paper, marks: Sequence[Mark], side: Side, level: float, *, ori
             tick = 0.5 * _TICK_MM
             paper.line([point(mark.at - tick, level - tick), point(mark.at + tick, level + tick)], width_mm=0.35)
         text_at = tail + outwards * 0.8
+        far: Align = "left" if outwards > 0.0 else "right"
         if flat:
-            paper.text(
-                mark.text,
-                place + 0.5 * LETTER_MM,
-                text_at,
-                align="left" if side == "above" else "right",
-                upward=True,
-            )
+            paper.text(mark.text, place + 0.5 * LETTER_MM, text_at, align=far, upward=True)
         else:
-            paper.text(mark.text, text_at, place - 0.5 * LETTER_MM, align="left" if side == "right" else "right")
+            paper.text(mark.text, text_at, place - 0.5 * LETTER_MM, align=far)
     for mark in marks:
         if not mark.text:
-            paper.line(
-                [point(mark.at, mark.start + outwards * GAP_MM), point(mark.at, level + outwards * OVERSHOOT_MM)]
-            )
+            begin, end = mark.start + outwards * GAP_MM, level + outwards * OVERSHOOT_MM
+            paper.line([point(mark.at, begin), point(mark.at, end)])
     measured = [mark.at for mark in ordered if not mark.leader]
     if origin is not None and measured:
         paper.line([point(min(origin, *measured), level), point(max(origin, *measured), level)])
@@ -110,20 +102,12 @@ def ladder(paper: Paper, marks: Sequence[Mark], side: Side, level: float, *, ori
 
 
 def fits_between(text: str, span: float) -> bool:
-    """Whether a text fits over a dimension line of this length."""
+    """Return whether a text fits over a dimension line of this length."""
     return span >= width_mm(text, LETTER_MM) + 2.0
 
 
 def across(paper: Paper, x: float, half: float, text: str, *, edge: float) -> None:
-    """An upright dimension of a diameter around the axis y = 0.
-
-    Args:
-        paper: to draw on.
-        x: of the dimension line.
-        half: half of the diameter on paper.
-        text: the dimension.
-        edge: x where the diameter's edge is.
-    """
+    """Draw an upright dimension of a diameter around the axis y = 0; its edge is at x = ``edge``."""
     outwards = 1.0 if x > edge else -1.0
     for y in (half, -half):
         paper.line([(edge + outwards * GAP_MM, y), (x + outwards * OVERSHOOT_MM, y)])
@@ -139,15 +123,10 @@ def across(paper: Paper, x: float, half: float, text: str, *, edge: float) -> No
 def callout(
     paper: Paper, lines: Sequence[str], x: float, y: float, tip: tuple[float, float], *, place: str | None = None
 ) -> None:
-    """Text beside a shelf, with a leader to a feature.
+    """Write text beside a shelf, with a leader to a feature.
 
-    Args:
-        paper: to draw on.
-        lines: the text; the first stands on the shelf.
-        x: left end of the shelf.
-        y: of the shelf.
-        tip: where the leader ends.
-        place: a tolerance of position and its datum, such as ``Ø0.1 A``, drawn as a frame below the text.
+    The first line stands on the shelf, whose left end is (x, y); the leader ends at ``tip``. ``place`` is a tolerance
+    of position and its datum, such as ``Ø0.1 A``, drawn as a frame below the text.
     """
     long = max(width_mm(line, LETTER_MM) for line in lines)
     paper.line([tip, (x - 3.0, y), (x + long + 1.0, y)])
@@ -160,23 +139,12 @@ def callout(
 
 
 def callout_height(lines: Sequence[str], place: str | None) -> float:
-    """From the top of a callout to the top of the next one."""
+    """Return the distance from the top of a callout to the top of the next one."""
     return 4.0 * len(lines) + (6.0 if place else 0.0) + 3.0
 
 
-FRAME_MM = 5.0
-"""Height of a tolerance frame: twice the lettering's (ISO 1101)."""
-
-
 def frame(paper: Paper, cells: Sequence[str], x: float, y: float) -> float:
-    """A tolerance frame (ISO 1101) with its lower left corner at (x, y); returns its width.
-
-    Args:
-        paper: to draw on.
-        cells: the symbol's name (``position``, ``coaxial``, ``square``, ``round``), value, datum.
-        x: of its left edge.
-        y: of its lower edge.
-    """
+    """Draw a frame (ISO 1101) of symbol, value and datum, its lower left corner at (x, y), and return its width."""
     left = x
     for k, cell in enumerate(cells):
         wide = FRAME_MM if k == 0 else max(width_mm(cell, LETTER_MM) + 2.4, FRAME_MM)
@@ -190,7 +158,6 @@ def frame(paper: Paper, cells: Sequence[str], x: float, y: float) -> float:
 
 
 def _symbol(paper: Paper, name: str, x: float, y: float) -> None:
-    """A symbol of ISO 1101 around (x, y)."""
     if name == "position":
         paper.circle(x, y, 1.1)
         paper.line([(x - 1.8, y), (x + 1.8, y)])
@@ -206,38 +173,20 @@ def _symbol(paper: Paper, name: str, x: float, y: float) -> None:
 
 
 def datum(paper: Paper, letter: str, x: float, y: float) -> None:
-    """A datum's letter in its box (ISO 5459), with the lower left corner at (x, y)."""
+    """Draw a datum's letter in its box (ISO 5459), with the lower left corner at (x, y)."""
     paper.line(np.array([(x, y), (x + FRAME_MM, y), (x + FRAME_MM, y + FRAME_MM), (x, y + FRAME_MM)]), closed=True)
     paper.text(letter, x + 0.5 * FRAME_MM, y + 0.5 * (FRAME_MM - LETTER_MM), align="centre")
-
-
-Floats = NDArray[np.float64]
-
-_NEAR_MM = 4.0
-"""Names that stand off farther have a leader."""
-_REACHES_MM = np.array(
-    [1.0, 2.0, 3.5, 5.0, 7.0, 9.0, 12.0, 15.0, 19.0, 24.0, 30.0, 38.0, 48.0, 60.0, 80.0, 110.0, 150.0]
-)
-_ANGLES = np.radians(
-    [45.0, 135.0, 225.0, 315.0, 0.0, 90.0, 180.0, 270.0, 22.5, 67.5, 112.5, 157.5, 202.5, 247.5, 292.5, 337.5]
-)
-_WAYS = np.array([[np.cos(angle), np.sin(angle)] for angle in _ANGLES])
-_ALIGNS: tuple[Align, ...] = tuple("left" if x > 0.3 else "right" if x < -0.3 else "centre" for x in _WAYS[:, 0])
-"""Directions in which a name may stand, and how it is then aligned."""
-_CLEAR_MM, _APART_MM = 0.2, 0.4
-"""Least distance of a name from lines and from other texts."""
-_LEADER_GAP_MM = 0.3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tag:
     """A name to place."""
 
-    text: str  #: what it says
-    #: x, y: of what it names, on the part
+    text: str
+    #: x, y, radius: where what it names stands on the part; radius 0 for a point
     x: float
     y: float
-    radius: float  #: of that; 0 for a point
+    radius: float
     height_mm: float  #: of the text on paper
 
 
@@ -250,16 +199,7 @@ class _Place:
 
 
 def place_tags(paper: Paper, tags: Sequence[Tag], scale: float) -> None:
-    """Write names on a view.
-
-    Args:
-        paper: the view, complete but for them.
-        tags: the names.
-        scale: paper over part.
-
-    Raises:
-        ValueError: a name has no free place.
-    """
+    """Write names on a view; ``ValueError`` if one has no free place."""
     lines = shapely.STRtree(_pieces(paper))
     texts = [label.box() for label in paper.labels]
     leaders: list[Floats] = []
@@ -273,7 +213,7 @@ def place_tags(paper: Paper, tags: Sequence[Tag], scale: float) -> None:
 
 
 def _pieces(paper: Paper) -> NDArray[np.object_]:
-    """Every straight piece of the lines of a paper, and its arrow heads."""
+    """Return every straight piece of the lines of a paper, and its arrow heads."""
     runs = [np.vstack([s.points, s.points[:1]]) if s.closed else s.points for s in paper.strokes]
     pairs = [np.stack([run[:-1], run[1:]], axis=1) for run in runs if len(run) > 1]
     straight = shapely.linestrings(np.concatenate(pairs)) if pairs else np.empty(0, dtype=object)
@@ -281,7 +221,7 @@ def _pieces(paper: Paper) -> NDArray[np.object_]:
 
 
 def _free(tag: Tag, scale: float, lines: shapely.STRtree, texts: Floats, leaders: Sequence[Floats]) -> _Place:
-    """The nearest free place of a name, at best one whose leader crosses nothing that can be read or followed."""
+    """Return the nearest free place of a name, at best one whose leader crosses nothing readable."""
     at, radius = scale * np.array([tag.x, tag.y]), scale * tag.radius
     around = np.array([_label(tag, 0.0, 0.0, align).box() for align in _ALIGNS])
     lowered = tag.height_mm * (0.5 - 0.5 * _WAYS[:, 1])
@@ -314,7 +254,7 @@ def _label(tag: Tag, x: float, y: float, align: Align) -> Label:
 
 
 def _covered(boxes: Floats, lines: shapely.STRtree, texts: Floats, leaders: NDArray[np.object_]) -> NDArray[np.bool_]:
-    """Which boxes, shape (n, 4), meet a line, another text or a leader; all of them at once, as there are many."""
+    """Return which boxes, shape (n, 4), meet a line, another text or a leader; all at once, as there are many."""
     high, low = boxes[:, None, 2:] + _APART_MM, boxes[:, None, :2] - _APART_MM
     covered = np.any(np.all((texts[:, :2] < high) & (texts[:, 2:] > low), axis=2), axis=1)
     areas = _grown(boxes, _CLEAR_MM)
@@ -324,18 +264,18 @@ def _covered(boxes: Floats, lines: shapely.STRtree, texts: Floats, leaders: NDAr
 
 
 def _leaders(at: Floats, radius: float, boxes: Floats) -> Floats:
-    """The lines from what is named to the nearest points of the boxes of its name, shape (n, 2, 2)."""
+    """Return the lines from what is named to the nearest points of the boxes of its name, shape (n, 2, 2)."""
     ends = np.clip(at, boxes[:, :2], boxes[:, 2:])
     along = (ends - at) / np.hypot(*(ends - at).T)[:, None]
     return np.stack([at + radius * along, ends - _LEADER_GAP_MM * along], axis=1)
 
 
 def _crossing(leaders: Floats, texts: Floats, others: NDArray[np.object_]) -> NDArray[np.bool_]:
-    """Which leaders, shape (n, 2, 2), meet a text or another leader."""
+    """Return which leaders, shape (n, 2, 2), meet a text or another leader."""
     obstacles = np.concatenate([others, _grown(texts, _CLEAR_MM)])
     return np.asarray(np.any(shapely.intersects(shapely.linestrings(leaders)[:, None], obstacles), axis=1))
 
 
 def _grown(boxes: Floats, by_mm: float) -> Any:
-    """Boxes of shape (..., 4) as areas, wider on all sides."""
+    """Return boxes of shape (..., 4) as areas, wider on all sides."""
     return shapely.box(*np.moveaxis(boxes + by_mm * np.array([-1.0, -1.0, 1.0, 1.0]), -1, 0))

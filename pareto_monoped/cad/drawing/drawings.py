@@ -1,17 +1,17 @@
-"""All drawings of a robot as PDF files: one of each part that is made, one of the assembly.
+"""All drawings of a robot as PDF files (ISO 32000-1): one of each part that is made, one of the assembly.
 
-Sheets as PDF (ISO 32000-1): vector lines and searchable text, the same bytes for the same drawing.
-
-The font is one of the fourteen that every reader has, so nothing is embedded; there is no time stamp.
+Sheets are vector lines and searchable text, the same bytes for the same drawing. The font is one of the fourteen that
+every reader has, so nothing is embedded; there is no time stamp.
 """
 
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import lru_cache
 from typing import Any
 
 from pareto_monoped.cad.drawing.assembly_sheets import assembly_sheet, cable_sheet, exploded_sheets
+from pareto_monoped.cad.drawing.bores import number as _number
 from pareto_monoped.cad.drawing.paper import CAPITAL, Fill, Label, Paper, Stroke
 from pareto_monoped.cad.drawing.part_sheet import Sheet, part_sheet
 from pareto_monoped.cad.drawing.sheet import Title, titled
@@ -20,15 +20,18 @@ from pareto_monoped.geometry.making import Fit, ToothMaking
 from pareto_monoped.geometry.parts import Part
 
 _POINTS_PER_MM = 72.0 / 25.4
+_TOLERANCES: Mapping[str, tuple[str, str]] = {
+    "machined": ("ISO 2768-mK", "3.2"),
+    "laser cut": ("ISO 2768-mK", "12.5"),
+    "3D printed": ("ISO 2768-cL", ""),
+    "moulded": ("ISO 3302-1 M3", ""),
+}
+"""General tolerances and roughness Ra in micrometres by process: what milling and turning, cutting by laser, printing
+with layers of 0.2 mm and casting rubber reach without effort (our own choice of classes)."""
 
 
 def pdf(sheets: Sequence[tuple[Paper, float, float]], title: str) -> bytes:
-    """A document of one page per sheet.
-
-    Args:
-        sheets: what stands on it, its width and its height in millimetres.
-        title: of the document.
-    """
+    """Return a document of one page per sheet."""
     bodies = [
         b"<< /Type /Catalog /Pages 2 0 R >>",
         b"",  # the list of pages, filled in below
@@ -51,7 +54,7 @@ def pdf(sheets: Sequence[tuple[Paper, float, float]], title: str) -> bytes:
 
 
 def _pdf_file(bodies: Sequence[bytes]) -> bytes:
-    """Objects with their numbers, the table of where they begin, the trailer."""
+    """Join objects with their numbers, the table of where they begin, the trailer."""
     out = bytearray(b"%PDF-1.4\n%\xe2\xe3\xcf\xd3\n")
     starts = []
     for number, body in enumerate(bodies, 1):
@@ -65,7 +68,7 @@ def _pdf_file(bodies: Sequence[bytes]) -> bytes:
 
 
 def _content(paper: Paper) -> Iterator[str]:
-    """The operators that draw a page, in millimetres."""
+    """Yield the operators that draw a page, in millimetres."""
     yield f"{_POINTS_PER_MM:.8f} 0 0 {_POINTS_PER_MM:.8f} 0 0 cm 1 J 1 j"
     style: tuple[float, tuple[float, ...]] | None = None
     for stroke in paper.strokes:
@@ -77,7 +80,7 @@ def _content(paper: Paper) -> Iterator[str]:
     for fill in paper.fills:
         yield _path(fill) + " f"
     for label in paper.labels:
-        yield _pdf_words(label)
+        yield _words(label)
 
 
 def _path(shape: Stroke | Fill) -> str:
@@ -85,7 +88,7 @@ def _path(shape: Stroke | Fill) -> str:
     return f"{points[0]} m " + " ".join(f"{point} l" for point in points[1:])
 
 
-def _pdf_words(label: Label) -> str:
+def _words(label: Label) -> str:
     x, y = label.start()
     turn = "0 1 -1 0" if label.upward else "1 0 0 1"
     size = _number(label.height_mm / CAPITAL)
@@ -94,21 +97,6 @@ def _pdf_words(label: Label) -> str:
 
 def _escaped(text: str) -> str:
     return text.replace("\\", r"\\").replace("(", r"\(").replace(")", r"\)")
-
-
-def _number(value: float) -> str:
-    text = f"{value:.3f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
-
-
-_TOLERANCES: Mapping[str, tuple[str, str]] = {
-    "machined": ("ISO 2768-mK", "3.2"),
-    "laser cut": ("ISO 2768-mK", "12.5"),
-    "3D printed": ("ISO 2768-cL", ""),
-    "moulded": ("ISO 3302-1 M3", ""),
-}
-"""General tolerances and roughness Ra in micrometres by process: what milling and turning, cutting by laser, printing
-with layers of 0.2 mm and casting rubber reach without effort (our own choice of classes)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -122,7 +110,7 @@ class Origin:
 
 
 def origin_of(record: Mapping[str, Any]) -> Origin:
-    """The same from the record of an export, which may still lack what is computed last."""
+    """Return what title blocks take from the record of an export, which may still lack what is computed last."""
     source = record["source"]
     name = (
         f"case {source['case']}"
@@ -138,47 +126,32 @@ def origin_of(record: Mapping[str, Any]) -> Origin:
 
 
 def part_drawings(parts: Sequence[ListedPart], origin: Origin, first: int = 1) -> dict[str, bytes]:
-    """The drawing of every part that is not bought, by the part's name.
-
-    Args:
-        parts: some of the robot's.
-        origin: of the robot.
-        first: number of the first drawing.
-    """
+    """Return the drawing of every part that is not bought, by the part's name."""
     made = [unique for unique in parts if unique.part.process != "bought"]
     return {unique.name: part_drawing(unique, origin, number) for number, unique in enumerate(made, first)}
 
 
 def part_drawing(unique: ListedPart, origin: Origin, number: int) -> bytes:
-    """The drawing of one part.
-
-    Args:
-        unique: the part.
-        origin: of the robot.
-        number: of the drawing.
-    """
-    part = unique.part
+    """Return the drawing of one part."""
+    part, grade = unique.part, unique.part.grade
     tolerances, finish = _TOLERANCES[part.process]
     title = Title(
-        name=_words(unique.name),
+        name=unique.name.replace("_", " "),
         number=f"{origin.digest}-{number:02d}",
-        material=part.grade.name if part.grade is not None else part.material.name,
-        hardness=part.grade.hardness if part.grade is not None else "",
+        material=grade.name if grade is not None else part.material.name,
+        hardness=grade.hardness if grade is not None else "",
         mass=_mass(float(part.unit_mass_kg())),
         count=unique.count,
         process=next((one.making for one in part.teeth if one.quality), part.process),
         tolerances=tolerances,
         finish=finish,
-        design=origin.design,
-        digest=origin.digest,
-        date=origin.date,
-        maker=origin.maker,
+        **asdict(origin),
     )
     return _file([_drawn(part, part.fits, part.teeth, part.accuracy_class, part.note)], title)
 
 
 def assembly_drawing(product: Product, origin: Origin) -> bytes:
-    """The drawing of the robot."""
+    """Return the drawing of the robot."""
     title = Title(
         name="monoped",
         number=f"{origin.digest}-00",
@@ -189,10 +162,7 @@ def assembly_drawing(product: Product, origin: Origin) -> bytes:
         process="assembled",
         tolerances="",
         finish="",
-        design=origin.design,
-        digest=origin.digest,
-        date=origin.date,
-        maker=origin.maker,
+        **asdict(origin),
     )
     return _file([assembly_sheet(product), *exploded_sheets(product), cable_sheet(product)], title)
 
@@ -202,7 +172,7 @@ def assembly_drawing(product: Product, origin: Origin) -> bytes:
 def _drawn(
     part: Part, _fits: tuple[Fit, ...], _teeth: tuple[ToothMaking, ...], _accuracy_class: int | None, _note: str
 ) -> Sheet:
-    """The sheet of a part without its title block."""
+    """Return the sheet of a part without its title block."""
     return part_sheet(part)
 
 
@@ -214,10 +184,6 @@ def _file(sheets: Sequence[Sheet], title: Title) -> bytes:
         titled(paper, size, scale, title, f"{number}/{len(sheets)}")
         pages.append((paper, size.width_mm, size.height_mm))
     return pdf(pages, f"{title.name}, {title.number}")
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ")
 
 
 def _mass(mass_kg: float) -> str:

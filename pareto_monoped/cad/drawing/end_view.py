@@ -12,13 +12,12 @@ from pareto_monoped.cad.drawing.profile import seen, visible_circles
 from pareto_monoped.cad.drawing.section import RoundPart
 from pareto_monoped.geometry.shapes import Pattern
 
-_COLUMN_MM = 12.0
-"""From the outline to the callouts."""
+_COLUMN_MM = 12.0  # from the outline to the callouts
 _SAME_MM = 1e-3
 
 
 def sees_more_from_above(part: RoundPart) -> bool:
-    """Whether more kinds of holes open towards the upper end than towards the lower one."""
+    """Return whether more kinds of holes open towards the upper end than towards the lower one."""
     above = sum(_open(part, bore, from_above=True) for bore in part.bores)
     below = sum(_open(part, bore, from_above=False) for bore in part.bores)
     middle = 0.5 * (part.body.bounds[0] + part.body.bounds[2])
@@ -26,13 +25,7 @@ def sees_more_from_above(part: RoundPart) -> bool:
 
 
 def end_view(part: RoundPart, scale: float, datum: str | None) -> Paper:
-    """The view with its callouts; the axis stands at the origin.
-
-    Args:
-        part: to draw.
-        scale: paper over part.
-        datum: letter of the axis that positions refer to, if there is one.
-    """
+    """Return the view with its callouts, the axis at the origin; ``datum`` is the axis that positions refer to."""
     paper = Paper()
     outer = part.body.bounds[3] * scale
     for radius in visible_circles(part.body, from_above=part.from_above):
@@ -47,7 +40,7 @@ def end_view(part: RoundPart, scale: float, datum: str | None) -> Paper:
 
 
 def draw_bore(paper: Paper, bore: Bore, scale: float, *, visible: bool, from_above: bool) -> None:
-    """Holes as circles with their cones and threads, centre lines and pitch circle."""
+    """Draw holes as circles with their cones and threads, centre lines and pitch circle."""
     mirrored = 1.0 if from_above else -1.0
     centres = [(mirrored * x * scale, y * scale) for x, y in bore.centres]
     mouth = bore.mouths[1 if from_above else 0]
@@ -68,20 +61,12 @@ def draw_bore(paper: Paper, bore: Bore, scale: float, *, visible: bool, from_abo
 
 
 def bore_lines(bore: Bore, *, from_above: bool, far_side: bool) -> list[str]:
-    """A callout: number and size, circle, countersink.
-
-    Args:
-        bore: the holes.
-        from_above: whether the view is from above.
-        far_side: whether they open on the other side only.
-    """
+    """Return a callout: number and size, circle, countersink; ``far_side`` holes open on the other side only."""
     times = f"{bore.count} {TIMES} " if bore.count > 1 else ""
     lines = [f"{times}{bore.size()}{', far side' if far_side else ''}"]
     if isinstance(bore.shape, Pattern):
-        turn = 360.0 / bore.count
-        phase = (
-            float(np.degrees(bore.shape.phase_rad)) if from_above else 180.0 - float(np.degrees(bore.shape.phase_rad))
-        )
+        turn, degrees = 360.0 / bore.count, float(np.degrees(bore.shape.phase_rad))
+        phase = degrees if from_above else 180.0 - degrees
         first = round(phase % turn, 3) % round(turn, 3)
         beginning = f", first at {number(first)}°" if first > 0.0 else ""
         lines.append(f"on Ø{number(2.0 * float(bore.shape.pitch_radius_mm))}, evenly spaced{beginning}")
@@ -89,25 +74,21 @@ def bore_lines(bore: Bore, *, from_above: bool, far_side: bool) -> list[str]:
 
 
 def _open(part: RoundPart, bore: Bore, *, from_above: bool) -> bool:
-    """Whether a viewer along the axis looks onto the mouth of a hole."""
+    """Return whether a viewer along the axis looks onto the mouth of a hole."""
     x, y = bore.centres[0]
     height = seen(part.body, float(np.hypot(x, y)), from_above=from_above)
     return height is not None and abs(height - (bore.high if from_above else bore.low)) < _SAME_MM
 
 
 def _visible(part: RoundPart, bore: Bore) -> bool:
-    """Whether a hole is seen: at its mouth, or through a wider one before it."""
-    return any(
-        _open(part, other, from_above=part.from_above) and other.radius >= bore.radius
-        for other in part.bores
-        if other.centres == bore.centres
-    )
+    """Return whether a hole is seen: at its mouth, or through a wider one before it."""
+    wide = [other for other in part.bores if other.centres == bore.centres and other.radius >= bore.radius]
+    return any(_open(part, other, from_above=part.from_above) for other in wide)
 
 
 def _pointed(bores: Sequence[Bore], scale: float, from_above: bool) -> list[NDArray[np.float64]]:
-    """The hole of each pattern that its leader ends at: of the rightmost two, in turn the upper and the lower one."""
-    found = []
-    side = 1.0
+    """Return the hole that each pattern's leader ends at: of the rightmost two, in turn the upper and the lower."""
+    found, side = [], 1.0
     for bore in bores:
         mirrored = 1.0 if from_above else -1.0
         centres = np.array([(mirrored * cx * scale, cy * scale) for cx, cy in bore.centres])
@@ -118,7 +99,6 @@ def _pointed(bores: Sequence[Bore], scale: float, from_above: bool) -> list[NDAr
 
 
 def _callouts(paper: Paper, part: RoundPart, scale: float, datum: str | None, outer: float) -> None:
-    """Callouts in a column at the right, each with a leader to one of its holes."""
     entries = [
         (
             bore,

@@ -1,14 +1,11 @@
 """What stands on a sheet: lines, filled areas and text, in millimetres of paper from the lower left corner.
 
-Line types and widths after ISO 128-2: wide lines of 0.5 mm for visible edges, narrow ones of 0.25 mm for the rest.
-
-Lettering: Helvetica, which every PDF reader has, and how wide its letters are.
-
-Heights are those of capital letters, as in ISO 3098-1.
+Line types and widths follow ISO 128-2: wide lines of 0.5 mm for visible edges, narrow ones of 0.25 mm for the rest.
+Lettering is Helvetica, which every PDF reader has; heights are those of capital letters, as in ISO 3098-1.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -17,22 +14,15 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-CAPITAL = 0.718
-"""Height of capitals over font size (Adobe's font metrics of Helvetica, ``CapHeight``)."""
-DESCENT = 0.207
-"""How far letters reach below their line, over font size (``Descender``)."""
+CAPITAL = 0.718  #: Height of capitals over font size (Adobe's font metrics of Helvetica, ``CapHeight``).
+DESCENT = 0.207  #: How far letters reach below their line, over font size (``Descender``).
 _METRICS = "mpl-data/fonts/pdfcorefonts/Helvetica.afm"  # Matplotlib ships Adobe's file
-TIMES = "\N{MULTIPLICATION SIGN}"
-"""Between numbers, as in ``6 x 8`` (ISO 129-1)."""
+TIMES = "\N{MULTIPLICATION SIGN}"  #: Between numbers, as in ``6 x 8`` (ISO 129-1).
 _OTHERS = {"Ø": "Oslash", "°": "degree", "±": "plusminus", TIMES: "multiply", "µ": "mu", "'": "quotesingle"}
 
 
 def width_mm(text: str, height_mm: float) -> float:
-    """Width of a line of text.
-
-    Raises:
-        ValueError: a letter that the drawings do not use.
-    """
+    """Return the width of a line of text; ``ValueError`` for a letter that the drawings do not use."""
     widths = _widths()
     unknown = [letter for letter in text if letter not in widths]
     if unknown:
@@ -42,7 +32,7 @@ def width_mm(text: str, height_mm: float) -> float:
 
 @lru_cache(maxsize=1)
 def _widths() -> dict[str, float]:
-    """Widths over font size, by letter: ASCII and a few signs of drawings."""
+    """Return widths over font size, by letter: ASCII and a few signs of drawings."""
     spec = find_spec("matplotlib")
     assert spec is not None
     assert spec.submodule_search_locations is not None
@@ -66,12 +56,9 @@ Align = Literal["left", "centre", "right"]
 WIDE_MM, NARROW_MM = 0.5, 0.25
 SOLID: tuple[float, ...] = ()
 DASHED = (2.5, 1.0)
-CHAIN = (6.0, 1.0, 0.6, 1.0)
-"""Long-dashed dotted: centre lines, pitch circles."""
-LETTER_MM = 2.5
-"""Height of dimensions and notes (ISO 3098-1, nominal size 2.5)."""
-LINE_PITCH = 1.6
-"""Distance of lines of text over their height (ISO 3098-1 asks for at least 1.4 without accents)."""
+CHAIN = (6.0, 1.0, 0.6, 1.0)  #: Long-dashed dotted: centre lines, pitch circles.
+LETTER_MM = 2.5  #: Height of dimensions and notes (ISO 3098-1, nominal size 2.5).
+LINE_PITCH = 1.6  #: Distance of lines of text over their height (ISO 3098-1 asks for at least 1.4 without accents).
 ARROW_MM = 2.5
 _ARROW_HALF_MM = 0.4
 _CHORD_MM = 0.01  # a circle on paper is a polygon that stays this close to it
@@ -98,21 +85,20 @@ class Fill:
 class Label:
     """A line of text."""
 
-    text: str  #: what it says
-    #: x, y: on the base line, where ``align`` says
-    x: float
-    y: float
+    text: str
+    x: float  #: of the end that ``align`` names
+    y: float  #: of the base line
     height_mm: float = LETTER_MM  #: of its capitals
-    align: Align = "left"  #: which end of the text stands at (x, y)
+    align: Align = "left"
     upward: bool = False  #: whether it runs upward, to be read from the right
 
     def start(self) -> tuple[float, float]:
-        """Where the first letter begins."""
+        """Return where the first letter begins."""
         back = {"left": 0.0, "centre": 0.5, "right": 1.0}[self.align] * width_mm(self.text, self.height_mm)
         return (self.x, self.y - back) if self.upward else (self.x - back, self.y)
 
     def box(self) -> tuple[float, float, float, float]:
-        """What it covers: least x and y, greatest x and y."""
+        """Return what it covers: least x and y, greatest x and y."""
         x, y = self.start()
         long, below = width_mm(self.text, self.height_mm), DESCENT / CAPITAL * self.height_mm
         if self.upward:
@@ -136,19 +122,18 @@ class Paper:
         dashes: tuple[float, ...] = SOLID,
         closed: bool = False,
     ) -> None:
-        """A line through points."""
-        self.strokes.append(
-            Stroke(points=np.asarray(points, dtype=np.float64), width_mm=width_mm, dashes=dashes, closed=closed)
-        )
+        """Draw a line through points."""
+        at = np.asarray(points, dtype=np.float64)
+        self.strokes.append(Stroke(points=at, width_mm=width_mm, dashes=dashes, closed=closed))
 
     def fill(self, points: Points) -> None:
-        """A black area."""
+        """Draw a black area."""
         self.fills.append(Fill(points=points))
 
     def circle(
         self, x: float, y: float, radius: float, *, width_mm: float = NARROW_MM, dashes: tuple[float, ...] = SOLID
     ) -> None:
-        """A full circle."""
+        """Draw a full circle."""
         self.line(circle_points(x, y, radius), width_mm=width_mm, dashes=dashes, closed=True)
 
     def text(
@@ -161,12 +146,12 @@ class Paper:
         align: Align = "left",
         upward: bool = False,
     ) -> None:
-        """A line of text; nothing for an empty one."""
+        """Write a line of text; nothing for an empty one."""
         if text:
             self.labels.append(Label(text=text, x=x, y=y, height_mm=height_mm, align=align, upward=upward))
 
     def arrow(self, x: float, y: float, towards: tuple[float, float]) -> None:
-        """A filled arrow head whose tip is at (x, y) and points along ``towards``."""
+        """Draw a filled arrow head whose tip is at (x, y) and points along ``towards``."""
         along = np.asarray(towards, dtype=np.float64)
         along /= np.hypot(*along)
         back = np.array([x, y]) - ARROW_MM * along
@@ -174,31 +159,19 @@ class Paper:
         self.fills.append(Fill(points=np.array([[x, y], back + across, back - across])))
 
     def centre_mark(self, x: float, y: float, reach: float) -> None:
-        """The two centre lines of a circle, that reach so far from its centre."""
+        """Draw the two centre lines of a circle, which reach so far from its centre."""
         self.line([(x - reach, y), (x + reach, y)], dashes=CHAIN)
         self.line([(x, y - reach), (x, y + reach)], dashes=CHAIN)
 
     def lay(self, other: "Paper", dx: float = 0.0, dy: float = 0.0) -> None:
-        """Everything of another paper, moved by (dx, dy)."""
+        """Add everything of another paper, moved by (dx, dy)."""
         by = np.array([dx, dy])
-        self.strokes += [
-            Stroke(points=s.points + by, width_mm=s.width_mm, dashes=s.dashes, closed=s.closed) for s in other.strokes
-        ]
-        self.fills += [Fill(points=f.points + by) for f in other.fills]
-        self.labels += [
-            Label(
-                text=text.text,
-                x=text.x + dx,
-                y=text.y + dy,
-                height_mm=text.height_mm,
-                align=text.align,
-                upward=text.upward,
-            )
-            for text in other.labels
-        ]
+        self.strokes += [replace(stroke, points=stroke.points + by) for stroke in other.strokes]
+        self.fills += [Fill(points=fill.points + by) for fill in other.fills]
+        self.labels += [replace(label, x=label.x + dx, y=label.y + dy) for label in other.labels]
 
     def box(self) -> tuple[float, float, float, float]:
-        """What it covers: least x and y, greatest x and y; zeros for an empty paper."""
+        """Return what it covers: least x and y, greatest x and y; zeros for an empty paper."""
         corners = [*(stroke.points for stroke in self.strokes), *(fill.points for fill in self.fills)]
         corners += [np.reshape(label.box(), (2, 2)) for label in self.labels]
         if not corners:
@@ -208,14 +181,14 @@ class Paper:
 
 
 def circle_points(x: float, y: float, radius: float) -> Points:
-    """Points around a circle, close enough for the eye."""
+    """Return points around a circle, close enough for the eye."""
     step = 2.0 * np.arccos(1.0 - min(_CHORD_MM / max(radius, 1e-9), 0.3))
     angles = np.linspace(0.0, 2.0 * np.pi, int(np.ceil(2.0 * np.pi / step)), endpoint=False)
     return np.stack([x + radius * np.cos(angles), y + radius * np.sin(angles)], axis=1)
 
 
 def overlapping(labels: Iterable[Label], clearance_mm: float = 0.0) -> list[tuple[Label, Label]]:
-    """Pairs of labels whose boxes come closer than the clearance."""
+    """Return pairs of labels whose boxes come closer than the clearance."""
     all_labels = list(labels)
     if len(all_labels) < 2:
         return []

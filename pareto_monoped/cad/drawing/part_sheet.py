@@ -1,9 +1,7 @@
-"""The drawing of one part: which views it needs, at which scale and on which sheet.
-
-The sheet of a round part: section, end view, tables.
-"""
+"""The drawing of one part: which views and tables it needs, at which scale and on which sheet."""
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 from pareto_monoped.cad.drawing.bores import bores, chamfer_text, number
 from pareto_monoped.cad.drawing.data_tables import DATUM, datum_fit, fit_table, gear_rows
@@ -17,17 +15,22 @@ from pareto_monoped.cad.drawing.sheet import SCALES, SIZES, Size, compose, inner
 from pareto_monoped.geometry.making import ToothMaking
 from pareto_monoped.geometry.parts import Part
 
+_READABLE_MM, _PLAN_MM = 60.0, 120.0
+"""Least length of the longest side on paper, if a sheet allows it: of round parts, and of others, which have more holes
+and nodes along it (our own choice)."""
+
+Sheet = tuple[Paper, Size, float]  #: What stands on it, its size, its scale.
+
 
 def round_part(part: Part) -> RoundPart:
-    """What the views are drawn from."""
-    body = half_section(part)
-    found = RoundPart(body=body, teeth=teeth_of(part), bores=bores(part), fits=part.fits, from_above=True)
-    above = sees_more_from_above(found)
-    return RoundPart(body=body, teeth=found.teeth, bores=found.bores, fits=part.fits, from_above=above)
+    """Return what the views are drawn from."""
+    body, teeth, holes = half_section(part), teeth_of(part), bores(part)
+    found = RoundPart(body=body, teeth=teeth, bores=holes, fits=part.fits, from_above=True)
+    return replace(found, from_above=sees_more_from_above(found))
 
 
 def round_views(drawn: RoundPart, scale: float) -> list[Paper]:
-    """Section, and end view if there is something to see."""
+    """Return the section, and the end view if there is something to see."""
     axis = datum_fit(drawn.fits)
     central = axis is not None and any(axis.holds(2.0 * c.radius) for c in cylinders(drawn.body))
     section = section_view(drawn, scale)
@@ -36,35 +39,29 @@ def round_views(drawn: RoundPart, scale: float) -> list[Paper]:
 
 
 def round_tables(part: Part, drawn: RoundPart) -> list[Paper]:
-    """Gear data and fits."""
-    gears = sorted(drawn.teeth, key=lambda teeth: abs(teeth.low - drawn.datum))
-    tables = [
-        table(
-            _gear_title(teeth, drawn),
-            ("", ""),
-            gear_rows(
-                teeth.gear,
-                accuracy_class=part.accuracy_class,
-                hole=teeth.hole,
-                making=_making(part, teeth),
-                hardness=part.grade.hardness if part.grade is not None else "",
-            ),
+    """Return gear data and fits."""
+    tables = []
+    for teeth in sorted(drawn.teeth, key=lambda teeth: abs(teeth.low - drawn.datum)):
+        rows = gear_rows(
+            teeth.gear,
+            accuracy_class=part.accuracy_class,
+            hole=teeth.hole,
+            making=_making(part, teeth),
+            hardness=part.grade.hardness if part.grade is not None else "",
         )
-        for teeth in gears
-    ]
+        tables.append(table(_gear_title(teeth, drawn), ("", ""), rows))
     around = [2.0 * c.radius for c in cylinders(drawn.body)]
     fits = fit_table(part.fits, [any(fit.holds(diameter) for diameter in around) for fit in part.fits])
     return [*tables, *([fits] if fits is not None else [])]
 
 
 def _making(part: Part, teeth: Teeth) -> ToothMaking | None:
-    """How these teeth are made, if the part says so."""
     gear = (int(teeth.gear.teeth), float(teeth.gear.module_mm))
     return next((one for one in part.teeth if (one.teeth, one.module_mm) == gear), None)
 
 
 def _gear_title(teeth: Teeth, drawn: RoundPart) -> str:
-    """A title that tells several gears of one part apart."""
+    """Return a title that tells several gears of one part apart."""
     if len(drawn.teeth) == 1:
         return "Gear data"
     near, far = sorted(abs(z - drawn.datum) for z in (teeth.low, teeth.high))
@@ -72,27 +69,15 @@ def _gear_title(teeth: Teeth, drawn: RoundPart) -> str:
 
 
 def round_notes(drawn: RoundPart) -> Iterator[str]:
-    """What no dimension says."""
+    """Yield what no dimension says."""
     chamfer = common_chamfer(drawn.body)
     if chamfer is not None:
         yield f"Chamfers without dimension {chamfer_text(*chamfer)}."
     yield f"Lengths run from the face marked with a circle, z = {drawn.datum:g} mm in the model."
 
 
-_READABLE_MM, _PLAN_MM = 60.0, 120.0
-"""Least length of the longest side on paper, if a sheet allows it: of round parts, and of others, which have more holes
-and nodes along it (our own choice)."""
-
-Sheet = tuple[Paper, Size, float]
-"""What stands on it, its size, its scale."""
-
-
 def part_sheet(part: Part) -> Sheet:
-    """The sheet of a part without its title block.
-
-    Raises:
-        ValueError: no sheet is large enough.
-    """
+    """Return the sheet of a part without its title block; ``ValueError`` if no sheet is large enough."""
     said = [part.note, part.joint.text if part.joint else ""]
     notes = [f"{note[0].upper()}{note[1:]}." for note in said if note]
     if is_round(part):
@@ -118,17 +103,9 @@ def placed(
     tables: Sequence[Paper],
     notes: Sequence[str],
 ) -> Sheet:
-    """The smallest sheet on which the views are readable, at the largest scale that it has room for.
+    """Return the smallest sheet with readable views, at the largest scale that fits, or raise ``ValueError``.
 
-    Args:
-        bare_mm: width and height of the views without dimensions, at full size.
-        readable: the least scale, if a sheet allows it.
-        views: draws them at a scale.
-        tables: beside the views.
-        notes: lines of text.
-
-    Raises:
-        ValueError: no sheet is large enough.
+    ``bare_mm`` is the size of the views without dimensions at full size; the scale is ``readable`` if possible.
     """
     drawn: dict[float, Sequence[Paper]] = {}
     best: Sheet | None = None
@@ -154,7 +131,6 @@ def placed(
 
 
 def _blank(bare_mm: tuple[float, float], scale: float) -> Paper:
-    """The room that views need without dimensions."""
     paper = Paper()
     paper.line([(0.0, 0.0), (scale * bare_mm[0], scale * bare_mm[1])])
     return paper

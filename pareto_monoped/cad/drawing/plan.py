@@ -39,8 +39,7 @@ class Plan:
 
     layers: tuple[Layer, ...]  #: from above
     bores: tuple[Bore, ...]  #: round holes, on the axis too
-    #: low, high: ends along z
-    low: float
+    low: float  #: end along z
     high: float
 
     @property
@@ -57,37 +56,28 @@ class Plan:
 
 
 def plan_of(part: Part) -> Plan:
-    """The part turned and moved: long side along the sheet, origin at its own axis if it has a hole there."""
+    """Return the part turned and moved: long side along the sheet, origin at its own axis if it has a hole there."""
     shapes = _shapes(part)
     outlines = [contour for contour, _, _, _ in shapes]
     found = bores(part, on_axis=True)
     turn = _turn(outlines)
-    if any(_centre(bore) == (0.0, 0.0) for bore in found):
+    if any(round(float(bore.shape.x_mm), 6) == round(float(bore.shape.y_mm), 6) == 0.0 for bore in found):
         shift = np.zeros(2)
     else:
         turned = [_moved(outline, turn, np.zeros(2)) for outline in outlines]
         shift = -np.concatenate([corners(outline) for outline in turned]).min(axis=0)
-    layers = [
-        Layer(
-            outline=_moved(outline, turn, shift),
-            holes=tuple(_moved(hole, turn, shift) for hole in holes),
-            low=low,
-            high=high,
-        )
-        for outline, holes, low, high in shapes
-    ]
+    layers = []
+    for outline, holes, low, high in shapes:
+        inner = tuple(_moved(hole, turn, shift) for hole in holes)
+        layers.append(Layer(outline=_moved(outline, turn, shift), holes=inner, low=low, high=high))
     moved = tuple(replace(bore, shape=_moved_shape(bore.shape, turn, shift)) for bore in found)
-    joined = _joined(layers)
-    return Plan(
-        layers=tuple(joined),
-        bores=moved,
-        low=min(layer.low for layer in joined),
-        high=max(layer.high for layer in joined),
-    )
+    joined = tuple(_joined(layers))
+    low, high = min(layer.low for layer in joined), max(layer.high for layer in joined)
+    return Plan(layers=joined, bores=moved, low=low, high=high)
 
 
 def nodes(contour: Contour) -> list[tuple[Points, Line | Arc]]:
-    """The points where a contour's pieces begin, with the piece that follows."""
+    """Return the points where a contour's pieces begin, with the piece that follows."""
     found = []
     for piece in contour.pieces:
         assert isinstance(piece, Line | Arc)
@@ -96,12 +86,12 @@ def nodes(contour: Contour) -> list[tuple[Points, Line | Arc]]:
 
 
 def is_square(contour: Contour) -> bool:
-    """Whether a contour consists of lines along the sheet's edges only."""
+    """Return whether a contour consists of lines along the sheet's edges only."""
     return bool(contour.pieces) and all(isinstance(p, Line) and _along(p) for p in contour.pieces)
 
 
 def rounded_rectangle(contour: Contour) -> tuple[float, float, float, float, float] | None:
-    """Width, height, corner radius and centre of a rectangle along the sheet's edges; None for another contour."""
+    """Return width, height, corner radius and centre of a rectangle along the sheet's edges; None for others."""
     lines = [piece for piece in contour.pieces if isinstance(piece, Line)]
     arcs = [piece for piece in contour.pieces if isinstance(piece, Arc)]
     if len(lines) != 4 or len(arcs) not in (0, 4) or not all(_along(line) for line in lines):
@@ -116,7 +106,7 @@ def rounded_rectangle(contour: Contour) -> tuple[float, float, float, float, flo
 
 
 def repeats(contour: Contour) -> int:
-    """How often a contour repeats itself around the origin, as a sprocket does; 1 for most."""
+    """Return how often a contour repeats itself around the origin, as a sprocket does; 1 for most."""
     points = np.array([point for point, _ in nodes(contour)])
     radii, angles = np.hypot(*points.T), np.unwrap(np.arctan2(points[:, 1], points[:, 0]))
     for count in range(len(points) // 2, 2, -1):
@@ -131,17 +121,13 @@ def repeats(contour: Contour) -> int:
 
 
 def _shapes(part: Part) -> list[tuple[Contour, tuple[Contour, ...], float, float]]:
-    """Outlines with their holes that are not round, and their ends along z; a ball's outline is that of its middle."""
-    found = [
-        (
-            outline,
-            tuple(inner for hole in prism.holes if not isinstance(hole, Circle | Pattern) for inner in contours(hole)),
-            float(prism.z0_mm),
-            float(prism.z1_mm),
-        )
-        for prism in part.prisms
-        for outline in contours(prism.outline)
-    ]
+    """Return outlines with their holes that are not round, and their ends along z; of a ball that of its middle."""
+    found = []
+    for prism in part.prisms:
+        others = [hole for hole in prism.holes if not isinstance(hole, Circle | Pattern)]
+        inner = tuple(contour for hole in others for contour in contours(hole))
+        ends = float(prism.z0_mm), float(prism.z1_mm)
+        found += [(outline, inner, *ends) for outline in contours(prism.outline)]
     for ball in part.balls:
         radius, y, top = float(ball.radius_mm), float(ball.y_mm), float(ball.top_mm)
         half = float(np.sqrt(max(radius**2 - top**2, 0.0)))
@@ -154,7 +140,7 @@ def _shapes(part: Part) -> list[tuple[Contour, tuple[Contour, ...], float, float
 
 
 def _joined(layers: Sequence[Layer]) -> list[Layer]:
-    """Layers of one outline and one set of holes that stand on each other, as one; from above."""
+    """Return layers of one outline and one set of holes that stand on each other as one; from above."""
     result: list[Layer] = []
     for layer in sorted(layers, key=lambda one: one.low):
         for k, other in enumerate(result):
@@ -173,7 +159,7 @@ def _equal(one: Contour, other: Contour) -> bool:
 
 
 def _turn(outlines: Sequence[Contour]) -> float:
-    """Angle by which to turn a part: most of its edges' length along the sheet, and the longer side across it."""
+    """Return the angle by which to turn a part: most of its edges along the sheet, and the longer side across it."""
     lengths: dict[float, float] = {}
     for contour in outlines:
         for piece in contour.pieces:
@@ -191,8 +177,7 @@ def _turn(outlines: Sequence[Contour]) -> float:
 
 def _rotated(points: Points, angle: float) -> Points:
     cos, sin = np.cos(angle), np.sin(angle)
-    turned: Points = points @ np.array([[cos, sin], [-sin, cos]])
-    return turned
+    return np.asarray(points @ np.array([[cos, sin], [-sin, cos]]))
 
 
 def _moved(contour: Contour, turn: float, shift: Points) -> Contour:
@@ -200,14 +185,12 @@ def _moved(contour: Contour, turn: float, shift: Points) -> Contour:
         circle = _moved_shape(contour.circle, turn, shift)
         assert isinstance(circle, Circle)
         return Contour(circle=circle)
-    return Contour(pieces=tuple(_moved_piece(piece, turn, shift) for piece in _plain(contour)))
-
-
-def _plain(contour: Contour) -> Iterator[Line | Arc]:
+    pieces = []
     for piece in contour.pieces:
         if not isinstance(piece, Line | Arc):
             raise TypeError(f"no plan of a contour with a {type(piece).__name__}")
-        yield piece
+        pieces.append(_moved_piece(piece, turn, shift))
+    return Contour(pieces=tuple(pieces))
 
 
 def _moved_piece(piece: Line | Arc, turn: float, shift: Points) -> Line | Arc:
@@ -225,18 +208,13 @@ def _moved_shape(shape: Circle | Pattern, turn: float, shift: Points) -> Circle 
     return replace(shape, x_mm=float(x), y_mm=float(y))
 
 
-def _centre(bore: Bore) -> tuple[float, float]:
-    return (round(float(bore.shape.x_mm), 6), round(float(bore.shape.y_mm), 6))
-
-
 def _along(line: Line) -> bool:
     (x0, y0), (x1, y1) = ends(line)
-    flat: bool = min(abs(x1 - x0), abs(y1 - y0)) < _FLAT_RAD * max(abs(x1 - x0), abs(y1 - y0)) + 1e-9
-    return flat
+    return bool(min(abs(x1 - x0), abs(y1 - y0)) < _FLAT_RAD * max(abs(x1 - x0), abs(y1 - y0)) + 1e-9)
 
 
 def cut_along(plan: Plan, x: float) -> BaseGeometry:
-    """The material on the plane across the sheet at ``x``, in coordinates z and y."""
+    """Return the material on the plane across the sheet at ``x``, in coordinates z and y."""
     line = shapely.linestrings([(x, plan.bounds[1] - 1.0), (x, plan.bounds[3] + 1.0)])
     solid = [
         box(layer.low, piece.bounds[1], layer.high, piece.bounds[3])
@@ -244,15 +222,13 @@ def cut_along(plan: Plan, x: float) -> BaseGeometry:
         for piece in shapely.get_parts(layer.area().intersection(line))
         if piece.length > _SAME_MM
     ]
-    empty: list[BaseGeometry] = []
-    for bore in plan.bores:
-        for cx, cy in bore.centres:
-            empty += _cut_bore(bore, cy, abs(cx - x))
-    return shapely.union_all(solid).difference(shapely.union_all(empty)) if empty else shapely.union_all(solid)
+    body = shapely.union_all(solid)
+    empty = [cut for bore in plan.bores for cx, cy in bore.centres for cut in _cut_bore(bore, cy, abs(cx - x))]
+    return body.difference(shapely.union_all(empty)) if empty else body
 
 
 def _cut_bore(bore: Bore, y: float, off: float) -> Iterator[BaseGeometry]:
-    """Where a hole, whose axis lies ``off`` the plane, opens it: the cylinder, and cones cut through their axis."""
+    """Yield where a hole, whose axis lies ``off`` the plane, opens it: the cylinder, and cones through their axis."""
     if off < bore.radius - _SAME_MM:
         half = float(np.sqrt(bore.radius**2 - off**2))
         yield box(bore.low, y - half, bore.high, y + half)

@@ -1,6 +1,6 @@
 """The sheet of a part with layers: view from above, section, tables of holes and of contours.
 
-The view of a part with layers from above, and its section: edges, numbered nodes, lettered holes.
+The views have edges, numbered nodes and lettered holes.
 """
 
 from collections.abc import Iterator, Sequence
@@ -26,31 +26,23 @@ from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.shapes import Arc, Pattern
 
-_NODE_MM = 1.8
-"""Height of the numbers of nodes (ISO 3098-1, the smallest size)."""
+_NODE_MM = 1.8  # height of the numbers of nodes (ISO 3098-1, the smallest size)
 _LADDER_MM = 6.0
-_DEPTH_MM = 18.0
-"""How far a ladder of lengths may reach below where it begins: ten digits."""
+_DEPTH_MM = 18.0  # how far a ladder of lengths may reach below where it begins: ten digits
 _LETTER = "A"
-_AXIS_MM = 9.0
-"""Length of the arrows of the origin's axes."""
+_AXIS_MM = 9.0  # length of the arrows of the origin's axes
 _SAME_MM = 1e-6
+_ROWS = 34  # rows of a table before it goes on beside itself
 
 
 def plan_view(plan: Plan, scale: float) -> Paper:
-    """The view from above without names; the plan's origin stands at (0, 0).
-
-    Args:
-        plan: to draw.
-        scale: paper over part.
-    """
+    """Return the view from above without names; the plan's origin stands at (0, 0)."""
     paper = Paper()
     above: BaseGeometry = shapely.Polygon()
     for layer in plan.layers:
-        area = layer.area()
         for contour in (layer.outline, *layer.holes):
             _edge(paper, contour, above, scale)
-        above = above.union(area)
+        above = above.union(layer.area())
     for bore in plan.bores:
         draw_bore(paper, bore, scale, visible=_seen(plan, bore), from_above=True)
     x0, y0 = (scale * v for v in plan.bounds[:2])
@@ -65,22 +57,20 @@ def plan_view(plan: Plan, scale: float) -> Paper:
 
 
 def axis_tags(scale: float) -> list[Tag]:
-    """The names of the axes of the tables' coordinates, at the tips of their arrows."""
+    """Return the names of the axes of the tables' coordinates, at the tips of their arrows."""
     tip = _AXIS_MM / scale
-    return [
-        Tag(text=name, x=x, y=y, radius=0.0, height_mm=LETTER_MM) for name, x, y in (("X", tip, 0.0), ("Y", 0.0, tip))
-    ]
+    return [_tag(name, x, y) for name, x, y in (("X", tip, 0.0), ("Y", 0.0, tip))]
 
 
 def section_place(plan: Plan) -> float:
-    """Where the section is taken: through the axis of the largest round hole, or the middle."""
+    """Return where the section is taken: through the axis of the largest round hole, or the middle."""
     x0, _, x1, _ = plan.bounds
     wide = max((bore for bore in plan.bores), key=lambda bore: bore.radius, default=None)
     return wide.centres[0][0] if wide is not None else 0.5 * (x0 + x1)
 
 
 def section_marks(paper: Paper, plan: Plan, scale: float) -> None:
-    """Where the section is taken, on the view from above: the ends of its plane with arrows, and its letter."""
+    """Mark where the section is taken, on the view from above: the ends of its plane with arrows, and its letter."""
     x, (_, low, _, high) = section_place(plan) * scale, plan.bounds
     floor = low * scale - (_LADDER_MM + _DEPTH_MM if _has_ladders(plan) else 2.0)
     for y, outwards in ((high * scale + 2.0, 1.0), (floor, -1.0)):
@@ -91,7 +81,7 @@ def section_marks(paper: Paper, plan: Plan, scale: float) -> None:
 
 
 def section_at(plan: Plan, scale: float) -> Paper:
-    """The section across the sheet, seen from the left."""
+    """Return the section across the sheet, seen from the left."""
     x = section_place(plan)
     paper = Paper()
     area = shapely.transform(cut_along(plan, x), lambda points: points * scale)
@@ -101,10 +91,8 @@ def section_at(plan: Plan, scale: float) -> Paper:
         for piece in shapely.get_parts(far):
             if piece.is_empty:
                 continue
-            _, low, _, high = piece.bounds
-            behind.append(
-                (float(piece.bounds[0]), box(layer.low * scale, low * scale, layer.high * scale, high * scale))
-            )
+            x0, low, _, high = piece.bounds
+            behind.append((float(x0), box(layer.low * scale, low * scale, layer.high * scale, high * scale)))
     covered = area
     for _, silhouette in sorted(behind, key=lambda entry: entry[0]):
         _lines(paper, silhouette.boundary.difference(covered.buffer(-1e-6)), WIDE_MM)
@@ -129,7 +117,7 @@ def _has_ladders(plan: Plan) -> bool:
 
 
 def _square_values(plan: Plan) -> tuple[list[float], list[float]]:
-    """Distinct x and y of the nodes of outlines whose edges lie along the sheet."""
+    """Return distinct x and y of the nodes of outlines whose edges lie along the sheet."""
     points = np.array([point for layer in plan.layers if is_square(layer.outline) for point, _ in nodes(layer.outline)])
     x, y = (sorted({round(float(v), 3) for v in points[:, k]}) for k in (0, 1))
     return x, y
@@ -143,16 +131,14 @@ def _marks(values: Sequence[float], start: float, scale: float) -> list[Mark]:
 
 
 def _edge(paper: Paper, contour: Contour, above: BaseGeometry, scale: float) -> None:
-    """A contour: wide where it is seen, dashed below other layers."""
+    """Draw a contour: wide where it is seen, dashed below other layers."""
     ring = shapely.LinearRing(polygon(contour, 0.01 / scale))
     if above.is_empty:
         paper.line(np.asarray(ring.coords)[:-1] * scale, width_mm=WIDE_MM, closed=True)
         return
     inside = above.buffer(-1e-4)
-    for part, width, dashes in (
-        (ring.difference(inside), WIDE_MM, ()),
-        (ring.intersection(inside), NARROW_MM, DASHED),
-    ):
+    styles = ((ring.difference(inside), WIDE_MM, ()), (ring.intersection(inside), NARROW_MM, DASHED))
+    for part, width, dashes in styles:
         _lines(paper, shapely.transform(part, lambda points: points * scale), width, dashes)
 
 
@@ -164,40 +150,20 @@ def _lines(paper: Paper, shape: BaseGeometry, width: float, dashes: tuple[float,
 
 
 def _seen(plan: Plan, bore: Bore) -> bool:
-    """Whether no material stands above the mouth of a hole, or the hole is seen through a wider one."""
+    """Return whether no material stands above the mouth of a hole, or the hole is seen through a wider one."""
     x, y = bore.centres[0]
-    covering = [
-        layer for layer in plan.layers if layer.low > bore.high - _SAME_MM and shapely.contains_xy(layer.area(), x, y)
-    ]
-    wider = any(
-        other.centres == bore.centres and other.radius > bore.radius and other.low > bore.high - _SAME_MM
-        for other in plan.bores
-    )
-    return not covering or wider
+    mouth = bore.high - _SAME_MM
+    covering = any(layer.low > mouth and shapely.contains_xy(layer.area(), x, y) for layer in plan.layers)
+    others = [other for other in plan.bores if other.centres == bore.centres and other.low > mouth]
+    return not covering or any(other.radius > bore.radius for other in others)
 
 
-def node_tag(text: str, point: np.ndarray) -> Tag:
-    """The number of a node."""
-    return Tag(text=text, x=float(point[0]), y=float(point[1]), radius=0.0, height_mm=_NODE_MM)
-
-
-def hole_tag(text: str, bore: Bore, index: int) -> Tag:
-    """The name of a hole."""
-    x, y = bore.centres[index]
-    return Tag(text=text, x=x, y=y, radius=bore.radius, height_mm=LETTER_MM)
-
-
-def shape_tag(text: str, x: float, y: float, radius: float = 0.0) -> Tag:
-    """The name of a window, or of a boss of some radius."""
+def _tag(text: str, x: float, y: float, radius: float = 0.0) -> Tag:
     return Tag(text=text, x=x, y=y, radius=radius, height_mm=LETTER_MM)
 
 
-_ROWS = 34
-"""Rows of a table before it goes on beside itself."""
-
-
 def plan_views(plan: Plan, scale: float, tags: Sequence[Tag]) -> list[Paper]:
-    """The view from above, and a section where the part has more than one thickness."""
+    """Return the view from above, and a section where the part has more than one thickness."""
     above = plan_view(plan, scale)
     cut = _has_section(plan)
     if cut:
@@ -207,23 +173,20 @@ def plan_views(plan: Plan, scale: float, tags: Sequence[Tag]) -> list[Paper]:
 
 
 def _has_section(plan: Plan) -> bool:
-    """Whether there is more to see across the sheet than one thickness."""
     flush = all(abs(bore.low - plan.low) < 1e-6 and abs(bore.high - plan.high) < 1e-6 for bore in plan.bores)
     return not (plan.is_flat and flush)
 
 
 def plan_tables(plan: Plan, part: Part) -> tuple[list[Paper], list[Tag]]:
-    """Tables of fits, holes, windows and contours, and the names that stand on the view."""
+    """Return tables of fits, holes, windows and contours, and the names that stand on the view."""
     around = [2.0 * radius for radius in _around(plan)]
     alone = [any(fit.holds(diameter) for diameter in around) for fit in part.fits]
     first = datum_fit(part.fits)
     axis = first is not None and alone[part.fits.index(first)]
     hole_rows, tags = _hole_rows(plan, DATUM if axis else None)
     contour_rows, window_rows, node_tags = _contour_rows(plan, part)
-    tables = []
-    table_of_fits = fit_table(part.fits, alone)
-    if table_of_fits is not None:
-        tables.append(table_of_fits)
+    fits = fit_table(part.fits, alone)
+    tables = [] if fits is None else [fits]
     if hole_rows or window_rows:
         rows = [*hole_rows, *window_rows]
         columns = ("Hole", "Size", "X", "Y", "Position")
@@ -237,7 +200,7 @@ def plan_tables(plan: Plan, part: Part) -> tuple[list[Paper], list[Tag]]:
 
 
 def _around(plan: Plan) -> Iterator[float]:
-    """Radii of the single round faces around an axis: bosses, and bores that belong to no pattern."""
+    """Yield radii of the single round faces around an axis: bosses, and bores that belong to no pattern."""
     for layer in plan.layers:
         if layer.outline.circle is not None:
             yield float(layer.outline.circle.radius_mm)
@@ -245,17 +208,15 @@ def _around(plan: Plan) -> Iterator[float]:
 
 
 def plan_notes(plan: Plan, part: Part) -> Iterator[str]:
-    """What no dimension says."""
+    """Yield what no dimension says."""
     x0, y0, x1, y1 = plan.bounds
-    if part.balls:
-        for ball in part.balls:
-            yield (
-                f"Ball SØ{number(2.0 * float(ball.radius_mm))}, cut flat {number(float(ball.top_mm))} above its centre."
-            )
-            if ball.pocket is not None:
-                depth = float(ball.pocket.z1_mm) - float(ball.pocket.z0_mm)
-                yield f"The pocket is {number(depth)} wide across the view."
-    elif not _has_section(plan):
+    for ball in part.balls:
+        width = number(2.0 * float(ball.radius_mm))
+        yield f"Ball SØ{width}, cut flat {number(float(ball.top_mm))} above its centre."
+        if ball.pocket is not None:
+            depth = float(ball.pocket.z1_mm) - float(ball.pocket.z0_mm)
+            yield f"The pocket is {number(depth)} wide across the view."
+    if not part.balls and not _has_section(plan):
         yield f"Thickness t = {number(plan.high - plan.low)}."
     yield f"Blank {number(x1 - x0)} {TIMES} {number(y1 - y0)} {TIMES} {number(plan.high - plan.low)}."
     if any(bore.feature is not None and bore.feature.thread is not None for bore in plan.bores):
@@ -266,12 +227,11 @@ def plan_notes(plan: Plan, part: Part) -> Iterator[str]:
 
 def _tables(title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[Paper]:
     parts = [rows[k : k + _ROWS] for k in range(0, len(rows), _ROWS)]
-    names = [title if k == 0 else f"{title}, continued" for k in range(len(parts))]
-    return [table(name, head, part) for name, part in zip(names, parts, strict=True)]
+    return [table(title if k == 0 else f"{title}, continued", head, part) for k, part in enumerate(parts)]
 
 
 def _hole_rows(plan: Plan, datum: str | None) -> tuple[list[tuple[str, ...]], list[Tag]]:
-    """A row for each hole or pattern: holes of one kind share a letter; ``datum`` is what positions refer to."""
+    """Return a row per hole or pattern: holes of one kind share a letter; ``datum`` is what positions refer to."""
     kinds: dict[str, list[Bore]] = {}
     for bore in plan.bores:
         kinds.setdefault(_kind(bore), []).append(bore)
@@ -284,16 +244,13 @@ def _hole_rows(plan: Plan, datum: str | None) -> tuple[list[tuple[str, ...]], li
             zone = f"Ø{number(bore.place_mm)}" if bore.place_mm is not None else ""
             place = f"{zone} {datum}" if zone and datum else zone
             rows.append((name, kind, number(x), number(y), place))
-            tags.append(hole_tag(name, bore, _rightmost(bore)))
+            rightmost = int(np.argmax(np.round([x + 0.1 * y for x, y in bore.centres], 6)))
+            tags.append(_tag(name, *bore.centres[rightmost], bore.radius))
     return rows, tags
 
 
-def _rightmost(bore: Bore) -> int:
-    return int(np.argmax(np.round([x + 0.1 * y for x, y in bore.centres], 6)))
-
-
 def _kind(bore: Bore) -> str:
-    """What the holes of one letter have in common."""
+    """Return what the holes of one letter have in common."""
     text = bore.size()
     if isinstance(bore.shape, Pattern):
         turn = 360.0 / bore.count
@@ -304,7 +261,7 @@ def _kind(bore: Bore) -> str:
 
 
 def _contour_rows(plan: Plan, part: Part) -> tuple[list[tuple[str, ...]], list[tuple[str, ...]], list[Tag]]:
-    """Rows of nodes, rows of windows and bosses, and the names of both."""
+    """Return rows of nodes, rows of windows and bosses, and the names of both."""
     rows: list[tuple[str, ...]] = []
     shapes: list[tuple[str, ...]] = []
     tags: list[Tag] = []
@@ -318,7 +275,6 @@ def _contour_rows(plan: Plan, part: Part) -> tuple[list[tuple[str, ...]], list[t
 
 
 def _end_chamfers(contour: Contour, layer: Layer, plan: Plan, part: Part) -> Iterator[str]:
-    """Chamfers at the ends of a boss."""
     if contour.circle is None:
         return
     for end in part.features:
@@ -339,29 +295,27 @@ def _add_contour(
     shapes: list[tuple[str, ...]],
     tags: list[Tag],
 ) -> None:
-    """The rows of one contour."""
-    ladders = contour is layer.outline and is_square(contour)
-    rectangle = rounded_rectangle(contour) if contour is not layer.outline else None
+    outline = contour is layer.outline
+    rectangle = rounded_rectangle(contour) if not outline else None
     if contour.circle is not None:
         name = f"R{1 + sum(row[0].startswith('R') for row in shapes)}"
         x, y, radius = (float(v) for v in (contour.circle.x_mm, contour.circle.y_mm, contour.circle.radius_mm))
         zone = next((f" {fit.zone}" for fit in fits if fit.holds(2.0 * radius)), "")
         shapes.append((name, f"boss Ø{number(2.0 * radius)}{zone} {span}".strip(), number(x), number(y), ""))
-        tags.append(shape_tag(name, x, y, radius))
+        tags.append(_tag(name, x, y, radius))
     elif rectangle is not None:
         width, height, radius, x, y = rectangle
         name = f"W{1 + sum(row[0].startswith('W') for row in shapes)}"
         corner = f", corners R{number(radius)}" if radius else ""
-        shapes.append(
-            (name, f"{number(width)} {TIMES} {number(height)}{corner} {span}".strip(), number(x), number(y), "")
-        )
-        tags.append(shape_tag(name, x, y))
-    elif not ladders:
+        text = f"{number(width)} {TIMES} {number(height)}{corner} {span}".strip()
+        shapes.append((name, text, number(x), number(y), ""))
+        tags.append(_tag(name, x, y))
+    elif not (outline and is_square(contour)):
         _add_nodes(contour, span, rows, tags)
 
 
 def _add_nodes(contour: Contour, span: str, rows: list[tuple[str, ...]], tags: list[Tag]) -> None:
-    """A row for each node; those of one period where the contour repeats itself."""
+    """Add a row per node; those of one period where the contour repeats itself."""
     listed = nodes(contour)
     times = repeats(contour)
     first = sum(row[0].isdigit() for row in rows) + 1
@@ -369,11 +323,11 @@ def _add_nodes(contour: Contour, span: str, rows: list[tuple[str, ...]], tags: l
         again = f"{times} times around the origin" if times > 1 else ""
         rows.append(("", "", "", ", ".join(filter(None, (span, again))), "", ""))
     for k, (point, piece) in enumerate(listed[: len(listed) // times], first):
-        centre = ("", "")
-        onward = "line"
+        centre, onward = ("", ""), "line"
         if isinstance(piece, Arc):
             turn = "" if float(piece.end_rad) > float(piece.start_rad) else ", clockwise"
             onward = f"arc R{number(float(piece.radius_mm))}{turn}"
             centre = (number(float(piece.x_mm)), number(float(piece.y_mm)))
-        rows.append((f"{k}", number(float(point[0])), number(float(point[1])), onward, *centre))
-        tags.append(node_tag(f"{k}", point))
+        x, y = float(point[0]), float(point[1])
+        rows.append((f"{k}", number(x), number(y), onward, *centre))
+        tags.append(Tag(text=f"{k}", x=x, y=y, radius=0.0, height_mm=_NODE_MM))

@@ -62,10 +62,7 @@ class Taper:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Teeth:
-    """Where a gear's teeth stand in the profile, and whether they bound a hole.
-
-    A ring's hole has the outline of an internal gear; a hole with that of an external gear takes a splined shaft.
-    """
+    """Where a gear's teeth stand, and whether they bound a hole: that of a ring, or for a splined shaft."""
 
     gear: ExternalGear | InternalGear
     low: float
@@ -74,22 +71,20 @@ class Teeth:
 
 
 def is_round(part: Part) -> bool:
-    """Whether a part is turned about its z axis, apart from teeth and round holes."""
+    """Return whether a part is turned about its z axis, apart from teeth and round holes."""
     if part.balls or not part.prisms:
         return False
     shapes = [shape for prism in part.prisms for shape in (prism.outline, *prism.holes)]
-    outlines = [prism.outline for prism in part.prisms]
-    return all(_on_axis(outline) for outline in outlines) and not any(
-        not isinstance(shape, Circle | Pattern | ExternalGear | InternalGear) for shape in shapes
-    )
+    known = all(isinstance(shape, Circle | Pattern | ExternalGear | InternalGear) for shape in shapes)
+    return all(_on_axis(prism.outline) for prism in part.prisms) and known
 
 
 def half_section(part: Part) -> BaseGeometry:
-    """The material of a round part in the half plane, without holes beside the axis; teeth reach to their tips."""
-    rings = [ring for prism in part.prisms for ring in _rings(prism)]
-    body = shapely.union_all(rings)
-    cut = [_triangle(bevel) for bevel in part.bevels if _on_axis(bevel.at) and _takes(bevel)]
-    added = [_triangle(bevel) for bevel in part.bevels if _on_axis(bevel.at) and not _takes(bevel)]
+    """Return the material of a round part in the half plane, without holes off the axis; teeth reach to their tips."""
+    body = shapely.union_all([ring for prism in part.prisms for ring in _rings(prism)])
+    cones = [bevel for bevel in part.bevels if _on_axis(bevel.at)]
+    cut = [_triangle(bevel) for bevel in cones if _takes(bevel)]
+    added = [_triangle(bevel) for bevel in cones if not _takes(bevel)]
     if cut:
         body = body.difference(shapely.union_all(cut))
     if added:
@@ -98,32 +93,22 @@ def half_section(part: Part) -> BaseGeometry:
 
 
 def teeth_of(part: Part) -> tuple[Teeth, ...]:
-    """The gears of a part, each from end to end."""
+    """Return the gears of a part, each from end to end."""
     found: dict[tuple[ExternalGear | InternalGear, bool], list[Prism]] = {}
     for prism in part.prisms:
         for shape, hole in ((prism.outline, False), *((inner, True) for inner in prism.holes)):
             if isinstance(shape, ExternalGear | InternalGear):
                 found.setdefault((shape, hole), []).append(prism)
     return tuple(
-        Teeth(
-            gear=gear,
-            low=min(float(p.z0_mm) for p in prisms),
-            high=max(float(p.z1_mm) for p in prisms),
-            hole=hole,
-        )
+        Teeth(gear=gear, low=min(float(p.z0_mm) for p in prisms), high=max(float(p.z1_mm) for p in prisms), hole=hole)
         for (gear, hole), prisms in found.items()
     )
 
 
 def cylinders(body: BaseGeometry) -> tuple[Cylinder, ...]:
-    """The cylindrical faces, from below; faces of one radius that a gap divides stay apart."""
+    """Return the cylindrical faces, from below; faces of one radius that a gap divides stay apart."""
     found = [
-        Cylinder(
-            radius=r0,
-            low=min(z0, z1),
-            high=max(z0, z1),
-            shaft=_inside(body, 0.5 * (z0 + z1), r0 - _ASIDE_MM),
-        )
+        Cylinder(radius=r0, low=min(z0, z1), high=max(z0, z1), shaft=_inside(body, 0.5 * (z0 + z1), r0 - _ASIDE_MM))
         for z0, r0, z1, r1 in edges(body)
         if abs(r0 - r1) < _SAME_MM and r0 > _SAME_MM
     ]
@@ -131,7 +116,7 @@ def cylinders(body: BaseGeometry) -> tuple[Cylinder, ...]:
 
 
 def faces(body: BaseGeometry) -> tuple[Face, ...]:
-    """The flat faces, from below."""
+    """Return the flat faces, from below."""
     found = [
         Face(z=z0, inner=min(r0, r1), outer=max(r0, r1), up=_inside(body, z0 - _ASIDE_MM, 0.5 * (r0 + r1)))
         for z0, r0, z1, r1 in edges(body)
@@ -141,7 +126,7 @@ def faces(body: BaseGeometry) -> tuple[Face, ...]:
 
 
 def tapers(body: BaseGeometry) -> tuple[Taper, ...]:
-    """The conical faces."""
+    """Return the conical faces."""
     return tuple(
         Taper(z0=z0, r0=r0, z1=z1, r1=r1)
         for z0, r0, z1, r1 in edges(body)
@@ -150,23 +135,22 @@ def tapers(body: BaseGeometry) -> tuple[Taper, ...]:
 
 
 def edges(body: BaseGeometry) -> Iterator[tuple[float, float, float, float]]:
-    """The straight edges of a profile: z and r of both ends."""
+    """Yield the straight edges of a profile: z and r of both ends."""
     for polygon in polygons(body):
         for ring in (polygon.exterior, *polygon.interiors):
-            points = list(ring.coords)
-            for (z0, r0), (z1, r1) in pairwise(points):
+            for (z0, r0), (z1, r1) in pairwise(ring.coords):
                 yield z0, r0, z1, r1
 
 
 def polygons(body: BaseGeometry) -> tuple[Polygon, ...]:
-    """The regions of a profile."""
+    """Return the regions of a profile."""
     if isinstance(body, MultiPolygon):
         return tuple(body.geoms)
     return (body,) if isinstance(body, Polygon) and not body.is_empty else ()
 
 
 def free(body: BaseGeometry, z0: float, z1: float, r: float) -> bool:
-    """Whether a line along the axis from ``z0`` to ``z1`` at radius ``r`` meets no material but along its surface."""
+    """Return whether a line along the axis from ``z0`` to ``z1`` at radius ``r`` meets material at most at its skin."""
     low, high = min(z0, z1) + _ASIDE_MM, max(z0, z1) - _ASIDE_MM
     if high <= low:
         return True
@@ -176,19 +160,16 @@ def free(body: BaseGeometry, z0: float, z1: float, r: float) -> bool:
 
 
 def seen(body: BaseGeometry, r: float, *, from_above: bool) -> float | None:
-    """Height of the first material that a viewer along the axis meets at a radius; None for an opening."""
+    """Return height of the first material that a viewer along the axis meets at a radius; None for an opening."""
     low, _, high, _ = body.bounds
     hit = shapely.intersection(body, shapely.linestrings([(low - 1.0, r), (high + 1.0, r)]))
-    if hit.is_empty:
-        return None
-    return float(hit.bounds[2 if from_above else 0])
+    return None if hit.is_empty else float(hit.bounds[2 if from_above else 0])
 
 
 def visible_circles(body: BaseGeometry, *, from_above: bool) -> tuple[float, ...]:
-    """Radii of the edges that a viewer along the axis sees."""
-    radii = sorted({round(r, 6) for _, r, _, _ in edges(body) if r > _SAME_MM})
+    """Return radii of the edges that a viewer along the axis sees."""
     found = []
-    for r in radii:
+    for r in sorted({round(r, 6) for _, r, _, _ in edges(body) if r > _SAME_MM}):
         inner = [seen(body, r - k * _ASIDE_MM, from_above=from_above) for k in (1, 2)]
         outer = [seen(body, r + k * _ASIDE_MM, from_above=from_above) for k in (1, 2)]
         if not _continues(inner, outer):
@@ -197,7 +178,7 @@ def visible_circles(body: BaseGeometry, *, from_above: bool) -> tuple[float, ...
 
 
 def _continues(inner: list[float | None], outer: list[float | None]) -> bool:
-    """Whether a surface goes on without an edge, from heights at one and two steps on either side."""
+    """Return whether a surface goes on without an edge, from heights at one and two steps on either side."""
     if any(z is None for z in (*inner, *outer)):
         return all(z is None for z in (*inner, *outer))
     near, far, other_near, other_far = (float(z) for z in (*inner, *outer) if z is not None)
@@ -212,13 +193,12 @@ def _on_axis(shape: Shape) -> bool:
 
 
 def _rings(prism: Prism) -> Iterator[Polygon]:
-    """The prism's material in the half plane: between its central hole and its outline."""
+    """Yield the prism's material in the half plane: between its central hole and its outline."""
     bores = [_reach(hole) for hole in prism.holes if _on_axis(hole)]
     yield box(float(prism.z0_mm), max(bores, default=0.0), float(prism.z1_mm), _reach(prism.outline))
 
 
 def _reach(shape: Shape) -> float:
-    """Radius of a circle, or of the tips of teeth."""
     if isinstance(shape, ExternalGear | InternalGear):
         return float(shape.tip_radius_mm)
     assert isinstance(shape, Circle)
@@ -226,14 +206,12 @@ def _reach(shape: Shape) -> float:
 
 
 def _triangle(bevel: Bevel) -> Polygon:
-    """The ring of a cone on the axis."""
     radius, edge = float(bevel.at.radius_mm), float(bevel.edge_mm)
     face, end = float(bevel.face_mm), float(bevel.end_mm)
     return Polygon([(face, radius), (face, edge), (end, radius)])
 
 
 def _takes(bevel: Bevel) -> bool:
-    """Whether a cone takes material away."""
     return bevel.hole or float(bevel.edge_mm) < float(bevel.at.radius_mm)
 
 

@@ -1,7 +1,7 @@
 """The cut view of a round part: full section along the axis with diameters, lengths and chamfers."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,9 +29,10 @@ from pareto_monoped.geometry.gears import ExternalGear
 from pareto_monoped.geometry.making import Fit
 
 _HATCH_MM = 2.0
-_LADDER_MM = 5.0
-"""From the outline to where a ladder's lines may bend."""
+_LADDER_MM = 5.0  # from the outline to where a ladder's lines may bend
 _SAME_MM = 1e-6
+
+_Along = Callable[[float], float]  # from a height along the axis to x on paper
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,13 +58,13 @@ class RoundPart:
 
 
 def diameter_text(radius: float, fits: Sequence[Fit]) -> str:
-    """A diameter with its fit."""
+    """Return a diameter with its fit."""
     zone = next((f" {fit.zone}" for fit in fits if fit.holds(2.0 * radius)), "")
     return f"Ø{number(2.0 * radius)}{zone}"
 
 
 def section_view(part: RoundPart, scale: float) -> Paper:
-    """The section with its dimensions; the axis lies on y = 0."""
+    """Return the section with its dimensions; the axis lies on y = 0."""
     paper = Paper()
     sign = -1.0 if part.from_above else 1.0
 
@@ -86,7 +87,8 @@ def section_view(part: RoundPart, scale: float) -> Paper:
     leaders = _diameters(paper, part, x_of, scale, (left, right))
     inner, outer = _lengths(part, x_of, scale)
     if inner:
-        inner.append(Mark(at=x_of(part.datum), start=_reach_at(part.body, part.datum) * scale, text=""))
+        reach = max(r for height, r, _, _ in edges(part.body) if abs(height - part.datum) < _SAME_MM)
+        inner.append(Mark(at=x_of(part.datum), start=reach * scale, text=""))
     leaders += _chamfers(part, x_of, scale)
     level = top * scale + _LADDER_MM
     ladder(paper, outer, "below", -level, origin=x_of(part.datum))
@@ -95,31 +97,35 @@ def section_view(part: RoundPart, scale: float) -> Paper:
 
 
 def common_chamfer(body: BaseGeometry) -> tuple[float, float] | None:
-    """Depth and width of the chamfer that a part has most often, which a note gives instead of dimensions."""
+    """Return depth and width of the chamfer that a part has most often; a note gives it instead of dimensions."""
     sizes = Counter((round(t.along, 3), round(t.across, 3)) for t in tapers(body) if abs(t.along - t.across) < 1e-3)
     return sizes.most_common(1)[0][0] if sizes else None
 
 
-def _holed(part: RoundPart) -> tuple[BaseGeometry, BaseGeometry]:
-    """Both halves of the section with the holes turned into its plane; those that would meet go into the lower half."""
+def _halves(part: RoundPart) -> list[list[tuple[Bore, BaseGeometry]]]:
+    """Return the holes turned into the section's plane, by the half that they are drawn in: upper, lower.
+
+    Holes that would meet go into the lower half, and are left out where that is full, too.
+    """
     halves: list[list[tuple[Bore, BaseGeometry]]] = [[], []]
     for bore in part.bores:
         profile = _bore_profile(bore)
         half = next((h for h in halves if not any(_meet(bore, profile, *other) for other in h)), None)
         if half is not None:
             half.append((bore, profile))
-    upper, lower = (
-        part.body.difference(shapely.union_all([profile for _, profile in half])) if half else part.body
-        for half in halves
-    )
-    return upper, lower
+    return halves
+
+
+def _holed(part: RoundPart) -> Iterator[BaseGeometry]:
+    """Yield both halves of the section with their holes, the upper one first."""
+    for half in _halves(part):
+        holes = [profile for _, profile in half]
+        yield part.body.difference(shapely.union_all(holes)) if holes else part.body
 
 
 def _meet(bore: Bore, profile: BaseGeometry, other: Bore, other_profile: BaseGeometry) -> bool:
-    """Whether two holes would be drawn over each other; steps of one hole belong together."""
-    if bore.centres == other.centres:
-        return False
-    return bool(profile.buffer(0.3).intersects(other_profile))
+    """Return whether two holes would be drawn over each other; steps of one hole belong together."""
+    return bore.centres != other.centres and bool(profile.buffer(0.3).intersects(other_profile))
 
 
 def _pitch(bore: Bore) -> float:
@@ -128,7 +134,6 @@ def _pitch(bore: Bore) -> float:
 
 
 def _bore_profile(bore: Bore) -> BaseGeometry:
-    """A hole with its cones in the section's plane."""
     at, r = _pitch(bore), bore.radius
     pieces: list[BaseGeometry] = [box(bore.low, at - r, bore.high, at + r)]
     for mouth, face, inwards in zip(bore.mouths, (bore.low, bore.high), (1.0, -1.0), strict=True):
@@ -138,14 +143,12 @@ def _bore_profile(bore: Bore) -> BaseGeometry:
     return shapely.union_all(pieces)
 
 
-def _on_paper(shape: BaseGeometry, x_of: Callable[[float], float], scale: float, side: float) -> BaseGeometry:
+def _on_paper(shape: BaseGeometry, x_of: _Along, scale: float, side: float) -> BaseGeometry:
     return affinity.affine_transform(shape, [x_of(1.0) - x_of(0.0), 0.0, 0.0, side * scale, x_of(0.0), 0.0])
 
 
-def _hatched(
-    part: RoundPart, half: BaseGeometry, x_of: Callable[[float], float], scale: float, side: float
-) -> BaseGeometry:
-    """The cut area without teeth, which are never hatched (ISO 2203)."""
+def _hatched(part: RoundPart, half: BaseGeometry, x_of: _Along, scale: float, side: float) -> BaseGeometry:
+    """Return the cut area without teeth, which are never hatched (ISO 2203)."""
     for teeth in part.teeth:
         one, other = sorted((float(teeth.gear.tip_radius_mm), float(teeth.gear.root_radius_mm)))
         half = half.difference(box(teeth.low, one, teeth.high, other))
@@ -153,14 +156,13 @@ def _hatched(
 
 
 def _outline(paper: Paper, area: BaseGeometry) -> None:
-    """The edges of an area."""
     for polygon in polygons(area.simplify(_SAME_MM)):
         for ring in (polygon.exterior, *polygon.interiors):
             paper.line(list(ring.coords)[:-1], width_mm=WIDE_MM, closed=True)
 
 
-def _steps(paper: Paper, body: BaseGeometry, x_of: Callable[[float], float], scale: float) -> None:
-    """The edges of a solid shaft, seen from outside: upright lines where its outline turns."""
+def _steps(paper: Paper, body: BaseGeometry, x_of: _Along, scale: float) -> None:
+    """Draw the edges of a solid shaft, seen from outside: upright lines where its outline turns."""
     reach: dict[float, float] = {}
     for z, r, _, _ in edges(body):
         reach[round(z, 6)] = max(reach.get(round(z, 6), 0.0), r)
@@ -169,7 +171,7 @@ def _steps(paper: Paper, body: BaseGeometry, x_of: Callable[[float], float], sca
 
 
 def hatch(paper: Paper, area: BaseGeometry, *, falling: bool = False) -> None:
-    """Hatching of an area at 45 degrees (ISO 128-3)."""
+    """Hatch an area at 45 degrees (ISO 128-3)."""
     if area.is_empty:
         return
     x0, y0, x1, y1 = area.bounds
@@ -185,8 +187,8 @@ def hatch(paper: Paper, area: BaseGeometry, *, falling: bool = False) -> None:
             paper.line(list(piece.coords))
 
 
-def _behind(paper: Paper, body: BaseGeometry, x_of: Callable[[float], float], scale: float) -> None:
-    """Edges of the bore behind the cut: upright lines where it changes."""
+def _behind(paper: Paper, body: BaseGeometry, x_of: _Along, scale: float) -> None:
+    """Draw the edges of the bore behind the cut: upright lines where it changes."""
     least: dict[float, float] = {}
     for z, r, _, _ in edges(body):
         least[round(z, 6)] = min(least.get(round(z, 6), np.inf), r)
@@ -195,8 +197,8 @@ def _behind(paper: Paper, body: BaseGeometry, x_of: Callable[[float], float], sc
             paper.line([(x_of(z), -r * scale), (x_of(z), r * scale)], width_mm=WIDE_MM)
 
 
-def _teeth(paper: Paper, teeth: Teeth, x_of: Callable[[float], float], scale: float) -> None:
-    """Root lines and pitch lines of a gear in section."""
+def _teeth(paper: Paper, teeth: Teeth, x_of: _Along, scale: float) -> None:
+    """Draw root lines and pitch lines of a gear in section."""
     low, high = x_of(teeth.low), x_of(teeth.high)
     reach = 2.0 if isinstance(teeth.gear, ExternalGear) else -2.0
     for side in (1.0, -1.0):
@@ -207,18 +209,13 @@ def _teeth(paper: Paper, teeth: Teeth, x_of: Callable[[float], float], scale: fl
         paper.line([(low - over, pitch), (high + over, pitch)], dashes=CHAIN)
 
 
-def _bore_lines(paper: Paper, part: RoundPart, x_of: Callable[[float], float], scale: float) -> None:
-    """Axes of the holes that are cut, and the threads' outer lines."""
-    drawn: list[tuple[Bore, float]] = []
-    halves: list[list[tuple[Bore, BaseGeometry]]] = [[], []]
+def _bore_lines(paper: Paper, part: RoundPart, x_of: _Along, scale: float) -> None:
+    """Draw the axes of the holes that are cut, and the threads' outer lines."""
+    side_of = {id(bore): side for half, side in zip(_halves(part), (1.0, -1.0), strict=True) for bore, _ in half}
     for bore in part.bores:
-        profile = _bore_profile(bore)
-        for half, side in zip(halves, (1.0, -1.0), strict=True):
-            if not any(_meet(bore, profile, *other) for other in half):
-                half.append((bore, profile))
-                drawn.append((bore, side))
-                break
-    for bore, side in drawn:
+        side = side_of.get(id(bore))
+        if side is None:
+            continue
         y = side * _pitch(bore) * scale
         ends = sorted((x_of(bore.low), x_of(bore.high)))
         paper.line([(ends[0] - 1.5, y), (ends[1] + 1.5, y)], dashes=CHAIN)
@@ -228,28 +225,20 @@ def _bore_lines(paper: Paper, part: RoundPart, x_of: Callable[[float], float], s
                 paper.line([(ends[0], y + r * scale), (ends[1], y + r * scale)])
 
 
-def _diameters(
-    paper: Paper,
-    part: RoundPart,
-    x_of: Callable[[float], float],
-    scale: float,
-    ends: tuple[float, float],
-) -> list[Mark]:
-    """Diameters beside the section, small ones nearest; returns those that must have a leader instead."""
+def _diameters(paper: Paper, part: RoundPart, x_of: _Along, scale: float, ends: tuple[float, float]) -> list[Mark]:
+    """Draw diameters beside the section, small ones nearest; return those that must have a leader instead."""
     sides: dict[bool, list[tuple[float, float]]] = {False: [], True: []}  # right of the section?
     leaders = []
     low, _, high, _ = part.body.bounds
     for radius in sorted({round(c.radius, 6) for c in cylinders(part.body)}):
         same = [c for c in cylinders(part.body) if abs(c.radius - radius) < 1e-5]
         text = diameter_text(radius, part.fits)
-        found = (
-            _open_side(part.body, same, x_of, (low, high), sides) if fits_between(text, 2.0 * radius * scale) else None
-        )
+        fits = fits_between(text, 2.0 * radius * scale)
+        found = _open_side(part.body, same, x_of, (low, high), sides) if fits else None
         if found is None:
             longest = max(same, key=lambda c: c.high - c.low)
-            leaders.append(
-                Mark(at=x_of(0.5 * (longest.low + longest.high)), start=radius * scale, text=text, leader=True)
-            )
+            middle = x_of(0.5 * (longest.low + longest.high))
+            leaders.append(Mark(at=middle, start=radius * scale, text=text, leader=True))
         else:
             to_right, edge = found
             sides[to_right].append((radius, edge))
@@ -264,11 +253,11 @@ def _diameters(
 def _open_side(
     body: BaseGeometry,
     same: Sequence[Cylinder],
-    x_of: Callable[[float], float],
+    x_of: _Along,
     span: tuple[float, float],
     sides: dict[bool, list[tuple[float, float]]],
 ) -> tuple[bool, float] | None:
-    """On which side extension lines reach the open, and where they begin: the nearer side, then the emptier one."""
+    """Return on which side extension lines reach the open, and where they begin: the nearer one, then the emptier."""
     options = []
     for c in same:
         for start, end in ((c.low, span[0]), (c.high, span[1])):
@@ -281,8 +270,8 @@ def _open_side(
     return to_right, edge
 
 
-def _lengths(part: RoundPart, x_of: Callable[[float], float], scale: float) -> tuple[list[Mark], list[Mark]]:
-    """Running lengths of the faces, from the datum: of those in bores, and of those outside."""
+def _lengths(part: RoundPart, x_of: _Along, scale: float) -> tuple[list[Mark], list[Mark]]:
+    """Return running lengths of the faces, from the datum: of those in bores, and of those outside."""
     inner, outer = [], []
     by_height: dict[float, list[Face]] = {}
     for face in faces(part.body):
@@ -299,31 +288,22 @@ def _lengths(part: RoundPart, x_of: Callable[[float], float], scale: float) -> t
     return inner, outer
 
 
-def _reach_at(body: BaseGeometry, z: float) -> float:
-    """The outermost radius at a height."""
-    return max(r for height, r, _, _ in edges(body) if abs(height - z) < _SAME_MM)
-
-
 def _open_outwards(body: BaseGeometry, face: Face, top: float) -> bool:
-    """Whether nothing stands outside a face on its empty side."""
+    """Return whether nothing stands outside a face on its empty side."""
     z = face.z + (2e-3 if face.up else -2e-3)
     return not body.intersects(box(z - 5e-4, face.outer - 1e-3, z + 5e-4, top + 1.0))
 
 
-def _chamfers(part: RoundPart, x_of: Callable[[float], float], scale: float) -> list[Mark]:
-    """Leaders of the conical faces that differ from the most common chamfer; one for each size."""
+def _chamfers(part: RoundPart, x_of: _Along, scale: float) -> list[Mark]:
+    """Return leaders of the conical faces that differ from the most common chamfer; one per size."""
     common = common_chamfer(part.body)
     found: dict[tuple[float, float], Taper] = {}
     for taper in tapers(part.body):
         size = (round(taper.along, 3), round(taper.across, 3))
         if size != common:
             found.setdefault(size, taper)
-    return [
-        Mark(
-            at=x_of(0.5 * (taper.z0 + taper.z1)),
-            start=0.5 * (taper.r0 + taper.r1) * scale,
-            text=chamfer_text(*size),
-            leader=True,
-        )
-        for size, taper in found.items()
-    ]
+    leaders = []
+    for size, taper in found.items():
+        at, start = x_of(0.5 * (taper.z0 + taper.z1)), 0.5 * (taper.r0 + taper.r1) * scale
+        leaders.append(Mark(at=at, start=start, text=chamfer_text(*size), leader=True))
+    return leaders

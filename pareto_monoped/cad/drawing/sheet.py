@@ -5,15 +5,12 @@ from dataclasses import dataclass
 
 from pareto_monoped.cad.drawing.paper import CHAIN, LETTER_MM, LINE_PITCH, WIDE_MM, Paper, width_mm
 
-BINDING_MM, MARGIN_MM = 20.0, 10.0
-"""Margins of the frame: for filing on the left, and on the other sides (ISO 5457)."""
+BINDING_MM, MARGIN_MM = 20.0, 10.0  #: Margins of the frame: for filing on the left, and on the other sides (ISO 5457).
 _CENTRING_MM = 5.0
 _FRAME_MM = 0.7  # width of the frame's line (ISO 5457)
-TITLE_MM = (180.0, 44.0)
-"""Width (ISO 7200: 180 mm at most) and height of the title block."""
+TITLE_MM = (180.0, 44.0)  #: Width (ISO 7200: 180 mm at most) and height of the title block.
 _CAPTION_MM = 1.8
-_SPACE_MM = 6.0
-"""Between things on a sheet."""
+_SPACE_MM = 6.0  # between things on a sheet
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,10 +27,10 @@ A3 = Size(name="A3", width_mm=420.0, height_mm=297.0)
 A2 = Size(name="A2", width_mm=594.0, height_mm=420.0)
 A1 = Size(name="A1", width_mm=841.0, height_mm=594.0)
 A0 = Size(name="A0", width_mm=1189.0, height_mm=841.0)
-SIZES = (A4, A3, A2, A1, A0)
-"""The upright A4 and the others lying, as ISO 5457 has them."""
-SCALES = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1)
-"""ISO 5455."""
+SIZES = (A4, A3, A2, A1, A0)  #: The upright A4 and the others lying, as ISO 5457 has them.
+SCALES = (10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1)  #: ISO 5455.
+Box = tuple[float, float, float, float]
+Placing = tuple[list[tuple[float, float]], float]  #: Lower left corners of tables, and how much room they take.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,8 +39,7 @@ class Title:
 
     name: str  #: of the part, in words
     number: str  #: of the drawing
-    #: material, hardness: with condition
-    material: str
+    material: str  #: with condition
     hardness: str
     mass: str  #: of one, with its unit
     count: int  #: how many the robot has
@@ -57,25 +53,19 @@ class Title:
 
 
 def scale_text(scale: float) -> str:
-    """Such as ``2:1``."""
+    """Return a text such as ``2:1``."""
     return f"{scale:g}:1" if scale >= 1.0 else f"1:{1.0 / scale:g}"
 
 
 def inner_mm(size: Size) -> tuple[float, float]:
-    """Width of a sheet within its frame, and height above its title block."""
+    """Return width of a sheet within its frame, and height above its title block."""
     return (size.width_mm - BINDING_MM - MARGIN_MM, size.height_mm - 2.0 * MARGIN_MM - TITLE_MM[1])
 
 
 def compose(size: Size, views: Sequence[Paper], tables: Sequence[Paper], notes: Sequence[str]) -> Paper | None:
-    """A sheet with its views in a row, tables at the right or below, and notes, but without frame and title block.
+    """Return a sheet without frame and title block, with its views in a row, tables at the right or below, and notes.
 
-    None if they do not fit.
-
-    Args:
-        size: of the paper.
-        views: side by side, their middles at their y = 0.
-        tables: below each other.
-        notes: lines of text beside or above the title block.
+    The views' middles stand at their y = 0. There is no sheet if all that does not fit.
     """
     left, bottom = BINDING_MM, MARGIN_MM
     right, top = size.width_mm - MARGIN_MM, size.height_mm - MARGIN_MM
@@ -109,13 +99,8 @@ def compose(size: Size, views: Sequence[Paper], tables: Sequence[Paper], notes: 
     return paper
 
 
-Box = tuple[float, float, float, float]
-Placing = tuple[list[tuple[float, float]], float]
-"""Lower left corners of tables, and how much room they take."""
-
-
 def _columned(boxes: Sequence[Box], height: float) -> Placing | None:
-    """Places of tables in columns, from the upper right corner leftwards; None if one is too high."""
+    """Return places of tables in columns, from the upper right corner leftwards; None if one is too high."""
     places: list[tuple[float, float]] = []
     x = y = column = 0.0
     for box in boxes:
@@ -131,7 +116,7 @@ def _columned(boxes: Sequence[Box], height: float) -> Placing | None:
 
 
 def _shelved(boxes: Sequence[Box], width: float) -> Placing | None:
-    """Places of tables in rows, from the lower left corner upwards; None if one is too wide."""
+    """Return places of tables in rows, from the lower left corner upwards; None if one is too wide."""
     places: list[tuple[float, float]] = []
     x = y = row = 0.0
     for box in boxes:
@@ -146,7 +131,7 @@ def _shelved(boxes: Sequence[Box], width: float) -> Placing | None:
 
 
 def _written(notes: Sequence[str], width: float) -> Paper:
-    """Notes as text, broken to a width, the last line at y = 0."""
+    """Return notes as text, broken to a width, the last line at y = 0."""
     paper = Paper()
     lines = [line for note in notes for line in broken(note, width)]
     for k, line in enumerate(lines):
@@ -155,7 +140,7 @@ def _written(notes: Sequence[str], width: float) -> Paper:
 
 
 def broken(text: str, width: float, height_mm: float = LETTER_MM) -> list[str]:
-    """A text broken into lines between its words."""
+    """Return a text broken into lines between its words."""
     lines: list[str] = []
     for word in text.split():
         longer = f"{lines[-1]} {word}" if lines else word
@@ -167,21 +152,12 @@ def broken(text: str, width: float, height_mm: float = LETTER_MM) -> list[str]:
 
 
 def titled(paper: Paper, size: Size, scale: float, title: Title, number: str = "1/1") -> None:
-    """Add frame and title block to a sheet.
-
-    Args:
-        paper: the sheet.
-        size: of the paper.
-        scale: of the views.
-        title: what the block says.
-        number: of the sheet, over how many there are.
-    """
+    """Add frame and title block to a sheet; ``number`` is the sheet's number over how many sheets there are."""
     _border(paper, size)
     _title_block(paper, size, scale, title, number)
 
 
 def _border(paper: Paper, size: Size) -> None:
-    """Frame and centring marks."""
     left, right, top = BINDING_MM, size.width_mm - MARGIN_MM, size.height_mm - MARGIN_MM
     paper.line([(left, MARGIN_MM), (right, MARGIN_MM), (right, top), (left, top)], width_mm=_FRAME_MM, closed=True)
     x, y = 0.5 * size.width_mm, 0.5 * size.height_mm
@@ -196,7 +172,7 @@ def _border(paper: Paper, size: Size) -> None:
 
 
 def _title_block(paper: Paper, size: Size, scale: float, title: Title, number: str) -> None:
-    """The block at the lower right: rows of cells, each with a small caption over its value."""
+    """Draw the block at the lower right: rows of cells, each with a small caption over its value."""
     x0, y0 = size.width_mm - MARGIN_MM - TITLE_MM[0], MARGIN_MM
     rows: tuple[tuple[tuple[float, str, str], ...], ...] = (
         ((80.0, "Name", title.name), (70.0, "Drawing", title.number), (30.0, "Sheet", f"{size.name}   {number}")),
@@ -214,35 +190,28 @@ def _title_block(paper: Paper, size: Size, scale: float, title: Title, number: s
         for wide, caption, value in row:
             paper.line([(x, y), (x + wide, y), (x + wide, y + high), (x, y + high)], closed=True)
             paper.text(caption, x + 1.2, y + high - _CAPTION_MM - 1.2, height_mm=_CAPTION_MM)
-            height = _fitting(value, wide - 2.4, 3.5 if caption in ("Name", "Drawing", "Scale") else LETTER_MM)
+            height = 3.5 if caption in ("Name", "Drawing", "Scale") else LETTER_MM
+            long, room = width_mm(value, height), wide - 2.4
+            height = height if long <= room else height * room / long
             paper.text(value, x + 1.2, y + 2.2, height_mm=height)
             x += wide
-    paper.line(
-        [(x0, y0), (x0 + TITLE_MM[0], y0), (x0 + TITLE_MM[0], y0 + TITLE_MM[1]), (x0, y0 + TITLE_MM[1])],
-        width_mm=WIDE_MM,
-        closed=True,
-    )
+    x1, y1 = x0 + TITLE_MM[0], y0 + TITLE_MM[1]
+    paper.line([(x0, y0), (x1, y0), (x1, y1), (x0, y1)], width_mm=WIDE_MM, closed=True)
     y = y0 + 3.0 * high
     if title.finish:
         surface(paper, title.finish, x0 + 40.0, y + 1.6)
     _first_angle(paper, x0 + 167.0, y + 4.2)
 
 
-def _fitting(value: str, width: float, height: float) -> float:
-    """The height, or a smaller one at which a value fits its cell."""
-    long = width_mm(value, height)
-    return height if long <= width else height * width / long
-
-
 def surface(paper: Paper, roughness: str, x: float, y: float) -> None:
-    """The symbol of a machined surface (ISO 21920-1) with its value; its tip is at (x, y)."""
+    """Draw the symbol of a machined surface (ISO 21920-1) with its value; its tip is at (x, y)."""
     paper.line([(x - 1.5, y + 2.6), (x, y), (x + 3.0, y + 5.2), (x + 5.0 + width_mm(roughness, LETTER_MM), y + 5.2)])
     paper.line([(x - 1.5, y + 2.6), (x + 1.5, y + 2.6)])
     paper.text(roughness, x + 3.6, y + 2.0)
 
 
 def _first_angle(paper: Paper, x: float, y: float) -> None:
-    """The symbol of first-angle projection (ISO 5456-2) around (x, y): the cone, then its view from the left."""
+    """Draw the symbol of first-angle projection (ISO 5456-2) around (x, y): the cone, then its view from the left."""
     paper.line([(x - 8.0, y - 1.25), (x - 2.0, y - 2.5), (x - 2.0, y + 2.5), (x - 8.0, y + 1.25)], closed=True)
     paper.line([(x - 9.0, y), (x - 1.0, y)], dashes=CHAIN)
     paper.circle(x + 4.0, y, 2.5)
@@ -251,23 +220,15 @@ def _first_angle(paper: Paper, x: float, y: float) -> None:
 
 
 def table(title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> Paper:
-    """A table with a title, its lower left corner at the origin; columns are as wide as they must be.
-
-    Args:
-        title: stands above it.
-        head: names of the columns; a table whose columns have no names has no head.
-        rows: cells.
-    """
+    """Return a table with a title, its lower left corner at the origin; without names of columns it has no head."""
     high = 5.0
     shown = (*([head] if any(head) else []), *rows)
     wide = [max(width_mm(row[k], LETTER_MM) for row in shown) + 3.0 for k in range(len(head))]
-    whole = sum(wide)
+    whole, top = sum(wide), high * len(shown)
     paper = Paper()
-    top = high * len(shown)
     paper.text(title, 0.0, top + 1.6)
     for k, row in enumerate(shown):
-        y = top - (k + 1) * high
-        x = 0.0
+        y, x = top - (k + 1) * high, 0.0
         for cell, width in zip(row, wide, strict=True):
             paper.text(cell, x + 1.5, y + 0.5 * (high - LETTER_MM) + 0.2)
             x += width

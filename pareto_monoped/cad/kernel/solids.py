@@ -1,10 +1,7 @@
 """Part -> solid: one extruded face with holes per prism, one fusion of all prisms that touch, then cones. Millimetres.
 
-Open CASCADE is called directly, as importing it takes a fifth of the time that a library above it takes.
-
-Bevels on solids: the kernel chamfers the edges of cylinders, and fuses countersunk heads. Millimetres.
-
-Chamfering costs 1 ms per edge, a seventh of what cutting with cones does.
+Open CASCADE is called directly, as importing it takes a fifth of the time that a library above it takes. Cones are
+chamfers of the edges of cylinders, 1 ms each, a seventh of what cutting with cones takes.
 """
 
 from collections.abc import Iterator, Sequence
@@ -35,19 +32,17 @@ from pareto_monoped.geometry.parts import Ball, Part, Prism
 from pareto_monoped.geometry.shapes import Circle, Line
 
 _ON_EDGE_MM = 1e-5  # from where an edge should be to where fused solids have it
+_UP = gp_Dir(0.0, 0.0, 1.0)
+_FIT_MM = 1e-6  # distance of splines from their points
 
 
 def beveled(solid: TopoDS_Shape, bevels: Sequence[Bevel]) -> TopoDS_Shape:
-    """A solid with cones on the edges of its cylinders.
-
-    Raises:
-        ValueError: a bevel stands on no edge of the solid, or does not fit there.
-    """
-    wider = [bevel for bevel in bevels if _adds(bevel)]
+    """Return a solid with cones on the edges of its cylinders; ``ValueError`` if one fits no edge."""
     cuts = [bevel for bevel in bevels if not _adds(bevel) and float(bevel.edge_mm) != float(bevel.at.radius_mm)]
     shape = _chamfered(solid, cuts) if cuts else solid
-    for bevel in wider:
-        shape = BRepAlgoAPI_Fuse(shape, _head(bevel)).Shape()
+    for bevel in bevels:
+        if _adds(bevel):
+            shape = BRepAlgoAPI_Fuse(shape, _head(bevel)).Shape()
     return shape
 
 
@@ -56,7 +51,6 @@ def _adds(bevel: Bevel) -> bool:
 
 
 def _head(bevel: Bevel) -> TopoDS_Shape:
-    """The cone of a countersunk head, around its shank."""
     ((x, y),) = bevel.centres_mm()
     along = float(bevel.end_mm) - float(bevel.face_mm)
     axes = gp_Ax2(gp_Pnt(x, y, float(bevel.face_mm)), gp_Dir(0.0, 0.0, float(np.sign(along))))
@@ -81,7 +75,7 @@ def _chamfered(solid: TopoDS_Shape, bevels: Sequence[Bevel]) -> TopoDS_Shape:
 
 
 def _round_edges(solid: TopoDS_Shape) -> tuple[list[TopoDS_Edge], list[TopoDS_Face], np.ndarray]:
-    """The circular edges between a plane and something else: edges, planes, and rows of x, y, z, radius."""
+    """Return the circular edges between a plane and something else: edges, planes, and rows of x, y, z, radius."""
     borders = EdgeMap()
     TopExp.MapShapesAndAncestors_s(solid, TopAbs_ShapeEnum.TopAbs_EDGE, TopAbs_ShapeEnum.TopAbs_FACE, borders)
     edges, faces, rows = [], [], []
@@ -100,21 +94,14 @@ def _round_edges(solid: TopoDS_Shape) -> tuple[list[TopoDS_Edge], list[TopoDS_Fa
     return edges, faces, np.array(rows, dtype=np.float64).reshape(-1, 4)
 
 
-_UP = gp_Dir(0.0, 0.0, 1.0)
-_FIT_MM = 1e-6  # distance of splines from their points
-
-
 def solid_of(part: Part) -> TopoDS_Shape:
-    """One instance of a part in its own frame: a solid, or a compound if the part has separate bodies.
-
-    The part's numbers must be floats, not arrays.
-    """
+    """Return one instance of a part, whose numbers are floats: a solid, or a compound of separate bodies."""
     return solid_from(part.prisms, part.balls, part.bevels)
 
 
 @lru_cache(maxsize=256)
 def solid_from(prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple[Bevel, ...] = ()) -> TopoDS_Shape:
-    """The same from a part's geometry. Solids are kept, as designs of one study share most of their 70 or so parts."""
+    """Return the same from a part's geometry, kept since designs of one study share most of their 70 or so parts."""
     pieces, left = [], list(bevels)
     # Before the fusion, pieces have few faces, which makes their cones cheap.
     layers = [layer for prism in regrouped(prisms) for layer in without_teeth(prism, bevels)]
@@ -125,11 +112,13 @@ def solid_from(prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple
         left = [bevel for bevel in left if bevel not in own]
         pieces += [beveled(body, own) for body in bodies]
     pieces += [_ball(ball) for ball in balls]
-    return _only(beveled(pieces[0] if len(pieces) == 1 else _fused(pieces), left))
+    shape = beveled(pieces[0] if len(pieces) == 1 else _fused(pieces), left)
+    solids = solids_in(shape)
+    return solids[0] if len(solids) == 1 else shape
 
 
 def solids_in(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
-    """The solids that a shape consists of: itself if it is one."""
+    """Return the solids that a shape consists of: itself if it is one."""
     explorer, found = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_SOLID), []
     while explorer.More():
         found.append(explorer.Current())
@@ -138,7 +127,7 @@ def solids_in(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
 
 
 def wire_of(contour: Contour, z_mm: float = 0.0) -> TopoDS_Wire:
-    """A closed curve as a wire in a plane across the z axis, anticlockwise."""
+    """Return a closed curve as a wire in a plane across the z axis, anticlockwise."""
     wire = BRepBuilderAPI_MakeWire()
     for edge in _circle(contour.circle, z_mm) if contour.circle is not None else _edges(contour, z_mm):
         wire.Add(edge)
@@ -197,7 +186,7 @@ def _ball(ball: Ball) -> TopoDS_Shape:
 
 
 def _fused(pieces: list[TopoDS_Shape]) -> TopoDS_Shape:
-    """Everything that touches as one solid; the pieces share faces but no volume, so glueing suffices."""
+    """Return everything that touches as one solid; the pieces share faces but no volume, so glueing suffices."""
     arguments, tools = List_TopoDS_Shape(), List_TopoDS_Shape()
     arguments.Append(pieces[0])
     for piece in pieces[1:]:
@@ -208,9 +197,3 @@ def _fused(pieces: list[TopoDS_Shape]) -> TopoDS_Shape:
     fuse.SetGlue(BOPAlgo_GlueShift)
     fuse.Build()
     return fuse.Shape()
-
-
-def _only(shape: TopoDS_Shape) -> TopoDS_Shape:
-    """The one solid of a shape, or the shape if there are several."""
-    solids = solids_in(shape)
-    return solids[0] if len(solids) == 1 else shape

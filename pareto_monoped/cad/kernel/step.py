@@ -1,9 +1,7 @@
 """STEP files (ISO 10303-21) with names and colours; the time stamp is fixed, so the same robot gives the same bytes.
 
 The kernel writes geometry and names. It would write colours in an order that changes from run to run, so the styles
-(ISO 10303-46) are added here.
-
-The STEP file of an assembly from the files of its parts, so that each solid is written once.
+(ISO 10303-46) are added here. Each solid is written once, and the file of the assembly is made from those of its parts:
 
 The kernel writes the assembly with stand-ins, one small solid per part. In a STEP file, a part's shape is a run of
 consecutive entities: its representation, its solids and their context. Each stand-in's run is replaced by the run of
@@ -49,10 +47,16 @@ _LINK = re.compile(
 )
 _REFERENCE = re.compile(rb"(?<!'Context )#(\d+)")
 """An entity's number; the kernel's names of contexts have numbers too, which are none of an entity."""
-_AFTER = 4
-"""Entities of a context after its first: the units of length, plane and solid angle, and the uncertainty."""
+_AFTER = 4  # entities of a context after its first: the units of length, plane and solid angle, and the uncertainty
 _AXES = 4
 """Entities of the axes at the origin, which all representations of a file share: placement, point, two directions."""
+Colour = tuple[float, float, float]
+TIMESTAMP = datetime(2025, 1, 1)  #: The time in every STEP file: the real time would make each export differ.
+_METRES = 1e-3  # the documents' unit: millimetres
+_USAGE = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()\s*'\d+'([^;]*;)")
+_NUMBER = re.compile(rb"^#(\d+) =", re.MULTILINE)
+_TAIL = 2000  # the last entity of a file, which is a short one, begins within so many characters from its end
+_END = b"ENDSEC;\nEND-ISO-10303-21;"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,9 +68,8 @@ class Shape:
     axes: int  #: of the axes at the origin; in a part's file these follow the representation
     solid: int  #: of its last solid
     context: int  #: of its context
-    #: start, stop: where the text of its entities begins and ends
-    start: int
-    stop: int
+    start: int  #: where the text of its entities begins
+    stop: int  #: where it ends
 
     @property
     def last(self) -> int:
@@ -75,7 +78,7 @@ class Shape:
 
 
 def shapes_in(text: bytes) -> list[Shape]:
-    """The shapes of all parts in a STEP file of the kernel, in their order."""
+    """Return the shapes of all parts in a STEP file of the kernel, in their order."""
     links = {found[1]: found for found in _LINK.finditer(text)}
     shapes = []
     for link in links.values():
@@ -103,12 +106,7 @@ def shapes_in(text: bytes) -> list[Shape]:
 
 
 def spliced(frame: bytes, parts: Mapping[str, bytes]) -> tuple[bytes, list[Shape]]:
-    """The file of an assembly, and the shapes of its parts there.
-
-    Args:
-        frame: the file of the assembly with a stand-in for each part.
-        parts: the file of each part, by name.
-    """
+    """Return the file of an assembly from ``frame``, the one with a stand-in per part, and the parts' shapes there."""
     stand_ins = shapes_in(frame)
     own = [_own_shape(stand_in, parts[stand_in.name]) for stand_in in stand_ins]
     lasts = [stand_in.last for stand_in in stand_ins]
@@ -122,8 +120,7 @@ def spliced(frame: bytes, parts: Mapping[str, bytes]) -> tuple[bytes, list[Shape
     pieces, shapes, done = [], [], 0
     for stand_in, shape, shift in zip(stand_ins, own, shifts, strict=False):
         pieces.append(_REFERENCE.sub(in_frame, frame[done : stand_in.start]))
-        moved = _moved(parts[shape.name], shape, stand_in.number + shift, stand_in.axes)
-        pieces.append(moved)
+        pieces.append(_moved(parts[shape.name], shape, stand_in.number + shift, stand_in.axes))
         ahead = stand_in.number + shift - shape.number - _AXES
         shapes.append(
             replace(shape, number=stand_in.number + shift, solid=shape.solid + ahead, context=shape.context + ahead)
@@ -134,11 +131,6 @@ def spliced(frame: bytes, parts: Mapping[str, bytes]) -> tuple[bytes, list[Shape
 
 
 def _own_shape(stand_in: Shape, text: bytes) -> Shape:
-    """The shape of a part's own file.
-
-    Raises:
-        ValueError: the files are not laid out as this module expects of the kernel.
-    """
     (shape,) = shapes_in(text)
     if shape.name != stand_in.name or shape.axes != shape.number + 1 or stand_in.axes > stand_in.number:
         raise ValueError(f"STEP file of {stand_in.name}: is laid out in an unknown way; install the kernel's version")
@@ -146,39 +138,24 @@ def _own_shape(stand_in: Shape, text: bytes) -> Shape:
 
 
 def _count(shape: Shape) -> int:
-    """How many entities a shape has, without the axes."""
+    """Return how many entities a shape has, without the axes."""
     return shape.last - shape.number + 1 - (_AXES if shape.number < shape.axes else 0)
 
 
 def _moved(text: bytes, shape: Shape, number: int, axes: int) -> bytes:
-    """The entities of a shape without its axes, the first of them with a new number, and with other axes."""
+    """Return the entities of a shape without its axes, the first of them with a new number, and with other axes."""
     first_after = shape.axes + _AXES
     body = text.index(b"\n#%d = " % first_after, shape.start) + 1
     first = text[shape.start : text.index(b"\n#%d = " % shape.axes, shape.start) + 1]
     ahead = number - shape.number - _AXES
 
-    def renumbered(found: re.Match[bytes]) -> bytes:
-        return b"#%d" % (int(found[1]) + ahead)
-
     def in_first(found: re.Match[bytes]) -> bytes:
         own = int(found[1])
         return b"#%d" % {shape.number: number, shape.axes: axes}.get(own, own + ahead)
 
-    return _REFERENCE.sub(in_first, first) + _REFERENCE.sub(renumbered, text[body : shape.stop])
-
-
-Colour = tuple[float, float, float]
-
-TIMESTAMP = datetime(2025, 1, 1)
-"""The time in every STEP file: the real time would make each export differ."""
-_METRES = 1e-3  # the documents' unit: millimetres
-_USAGE = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()\s*'\d+'([^;]*;)")
-
-
-_NUMBER = re.compile(rb"^#(\d+) =", re.MULTILINE)
-_TAIL = 2000
-"""The last entity of a file, which is a short one, begins within so many characters from its end."""
-_END = b"ENDSEC;\nEND-ISO-10303-21;"
+    return _REFERENCE.sub(in_first, first) + _REFERENCE.sub(
+        lambda found: b"#%d" % (int(found[1]) + ahead), text[body : shape.stop]
+    )
 
 
 class _Document:
@@ -208,7 +185,7 @@ class _Document:
         return label
 
     def text(self, name: str) -> bytes:
-        """The file without colours."""
+        """Return the file without colours."""
         self.shapes.UpdateAssemblies()
         for printer in Message.DefaultMessenger_s().Printers():
             printer.SetTraceLevel(Message_Gravity.Message_Fail)
@@ -233,7 +210,7 @@ class _Document:
 
 
 def part_step(solid: TopoDS_Shape, name: str, colour: Colour) -> bytes:
-    """One part, in millimetres."""
+    """Return one part, in millimetres."""
     document = _Document()
     document.part(solid, name)
     text = document.text(name)
@@ -243,12 +220,9 @@ def part_step(solid: TopoDS_Shape, name: str, colour: Colour) -> bytes:
 def assembly_step(
     assembly: StepAssembly, parts: Mapping[str, bytes], compounds: Mapping[str, TopoDS_Shape] = MappingProxyType({})
 ) -> bytes:
-    """The assembly as a tree: the robot, its units, their parts. Each unique part is written once.
+    """Return the assembly as a tree: the robot, its units, their parts. Each unique part is written once.
 
-    Args:
-        assembly: its units, and where its parts stand.
-        parts: the file of each part, by name.
-        compounds: parts of several bodies, by name; the kernel writes them in another form, here once more.
+    ``compounds`` are parts of several bodies, which the kernel writes in another form, here once more.
     """
     stand_ins = {name: compounds.get(name) or BRepPrimAPI_MakeSphere(1.0).Shape() for name in assembly.parts}
     text, shapes = spliced(tree_step(assembly, stand_ins), parts)
@@ -256,7 +230,7 @@ def assembly_step(
 
 
 def tree_step(assembly: StepAssembly, solids: Mapping[str, TopoDS_Shape]) -> bytes:
-    """The same as the kernel writes it from solids by name, without colours. No two names may share a solid."""
+    """Return the same as the kernel writes it from solids by name, without colours. No two names may share a solid."""
     document = _Document()
     labels = {name: document.part(solid, name) for name, solid in solids.items()}
     units = []

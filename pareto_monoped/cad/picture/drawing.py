@@ -1,10 +1,7 @@
 """Pictures without a display: shaded triangles, and a PNG writer.
 
-Parallel projection, light from over the viewer's shoulder, and dark lines where the part or the depth changes.
-
-Triangles -> pixels with a depth buffer, compiled by numba; another thread runs on meanwhile.
-
-Importing this module imports numba, so it is imported where a picture is drawn.
+Parallel projection, light from over the viewer's shoulder, and dark lines where the part or the depth changes. Numba
+compiles the way from triangles to pixels; importing it takes long, so this module is imported where pictures are drawn.
 """
 
 import struct
@@ -19,6 +16,7 @@ from numpy.typing import NDArray
 from pareto_monoped.compute.compiled import compiled
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.int32]
 Colour = tuple[float, float, float]
 
 _LIGHTS = (((-0.35, 0.55, 0.75), 0.75), ((0.7, 0.1, 0.4), 0.25))  # directions in the view (right, up, to the viewer)
@@ -34,7 +32,7 @@ class Body:
 
     points_mm: Floats  #: corners, shape (n, 3)
     triangles: NDArray[np.int64]  #: indices of corners, shape (m, 3)
-    colour: Colour  #: of the body
+    colour: Colour
     number: int = 0  #: of the row in the legend that names it; 0 for none
 
 
@@ -51,9 +49,9 @@ class Faces:
 class Shown:
     """Faces in a picture."""
 
-    faces: Faces  #: of a body
-    colour: Colour  #: of the body
-    number: int  #: of the row in the legend that names it; 0 for none
+    faces: Faces
+    colour: Colour
+    number: int  #: of the row in the legend that names the body; 0 for none
     move_mm: Floats  #: in the axes of the view, shape (3,)
 
 
@@ -74,7 +72,7 @@ class View:
     up: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
     def axes(self) -> Floats:
-        """Rows: right, up and towards the viewer, in the scene's frame."""
+        """Return the rows right, up and towards the viewer, in the scene's frame."""
         return _axes(self)
 
 
@@ -90,13 +88,7 @@ def _axes(view: View) -> Floats:
 
 
 def faces_of(points_mm: Floats, triangles: NDArray[np.int64], axes: Floats) -> Faces:
-    """What a viewer sees of a body.
-
-    Args:
-        points_mm: corners, shape (n, 3).
-        triangles: indices of corners, shape (m, 3).
-        axes: of the view, see ``View.axes``.
-    """
+    """Return what a viewer sees of a body; ``axes`` are those of ``View.axes``."""
     points = points_mm @ axes.T
     corners = points[triangles]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -110,19 +102,16 @@ def faces_of(points_mm: Floats, triangles: NDArray[np.int64], axes: Floats) -> F
 
 
 def draw(bodies: Sequence[Body], view: View, *, width: int, height: int) -> Drawn:
-    """A picture of all bodies, scaled to fill it."""
-    axes, still = view.axes(), np.zeros(3)
-    shown = [
-        Shown(
-            faces=faces_of(body.points_mm, body.triangles, axes), colour=body.colour, number=body.number, move_mm=still
-        )
-        for body in bodies
-    ]
+    """Return a picture of all bodies, scaled to fill it."""
+    axes, still, shown = view.axes(), np.zeros(3), []
+    for body in bodies:
+        faces = faces_of(body.points_mm, body.triangles, axes)
+        shown.append(Shown(faces=faces, colour=body.colour, number=body.number, move_mm=still))
     return draw_faces(shown, width=width, height=height)
 
 
 def draw_faces(shown: Sequence[Shown], *, width: int, height: int, margin: float = 0.04) -> Drawn:
-    """A picture of faces that one viewer sees, scaled to fill it."""
+    """Return a picture of faces that one viewer sees, scaled to fill it."""
     # Two by two pixels are drawn per pixel of the picture, which smooths edges.
     w, h = 2 * width, 2 * height
     boxes = np.array([one.faces.box_mm + one.move_mm for one in shown])
@@ -153,7 +142,7 @@ def prepare() -> None:
 
 
 def png(image: NDArray[np.uint8]) -> bytes:
-    """The bytes of a PNG file (ISO 15948) of an RGB image, shape (height, width, 3)."""
+    """Return the bytes of a PNG file (ISO 15948) of an RGB image, shape (height, width, 3)."""
     height, width, _ = image.shape
     # Each row begins with its filter: 2, the difference to the row above, which suits flat shading.
     above = np.vstack([np.zeros((1, width, 3), np.uint8), image[:-1]])
@@ -163,35 +152,25 @@ def png(image: NDArray[np.uint8]) -> bytes:
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
     header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    return (
-        b"\x89PNG\r\n\x1a\n"
-        + chunk(b"IHDR", header)
-        + chunk(b"IDAT", zlib.compress(rows.tobytes(), 6))
-        + chunk(b"IEND", b"")
-    )
+    data = chunk(b"IDAT", zlib.compress(rows.tobytes(), 6))
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + data + chunk(b"IEND", b"")
 
 
 def _lit(normal: Floats) -> Floats:
-    """Brightness of faces with the given normals in the view, shape (n,)."""
+    """Return the brightness of faces with the given normals in the view, shape (n,)."""
     light = np.full(len(normal), _AMBIENT)
     for direction, strength in _LIGHTS:
         unit = np.asarray(direction) / np.linalg.norm(direction)
         light += strength * np.clip(normal @ unit, 0.0, None)
-    brightness: Floats = np.minimum(light, 1.15)
-    return brightness
-
-
-Indices = NDArray[np.int32]
+    return np.asarray(np.minimum(light, 1.15))
 
 
 @compiled
 def nearest(triangles: Floats, winner: Indices, depth: Floats) -> None:
-    """Which triangle is nearest at each pixel, and how near; of equally near ones the first.
+    """Find which triangle is nearest at each pixel, of shape (height, width); of equally near ones the first.
 
-    Args:
-        triangles: corners in pixels to the right, pixels down, and towards the viewer, shape (n, 3, 3).
-        winner: the triangle's index, shape (height, width); pixels that none covers are left as they are.
-        depth: how near, shape (height, width); -infinity where there is nothing yet.
+    ``triangles`` has corners in pixels right and down and their nearness, shape (n, 3, 3). ``winner`` keeps its values
+    where no triangle is, ``depth`` begins as -infinity.
     """
     height, width = winner.shape
     for index in range(len(triangles)):
@@ -224,15 +203,10 @@ def nearest(triangles: Floats, winner: Indices, depth: Floats) -> None:
 
 @compiled
 def composed(winner: Indices, depth: Floats, owner: Indices, colours: Floats, line: Floats, jump: float) -> Floats:
-    """Colours from 0 to 1 of a picture of half the width and height, with lines where another body or depth begins.
+    """Return the colours from 0 to 1 of a picture of half the size, with lines where another body or depth begins.
 
-    Args:
-        winner: index of the triangle at each pixel, shape (2 height, 2 width); the last colour's where none is.
-        depth: how near it is, the same shape.
-        owner: body of each triangle, and a last number for the background.
-        colours: red, green and blue of each triangle, and last of the paper.
-        line: colour of the lines.
-        jump: difference of depth that makes a line.
+    ``winner`` and ``depth`` are those of ``nearest``; the last colour is the paper's. ``owner`` has the body of each
+    triangle, and a last number for the background. A line is drawn where the depth jumps by more than ``jump``.
     """
     height, width = winner.shape
     picture = np.zeros((height // 2, width // 2, 3))

@@ -1,7 +1,4 @@
-"""What is written on a picture: a scale bar, numbers with leaders, and a legend.
-
-Colours of parts in sections and exploded views, which colour-blind readers can tell apart as well.
-"""
+"""What is written on a picture: a scale bar, numbers with leaders, and a legend in colours that all can tell apart."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -24,34 +21,10 @@ LEAST_DISTANCE, LEAST_FOR_DEFICIENT = 24.0, 13.0
 13 is plain side by side, 24 also apart from each other, where five greens 17 apart were taken for each other."""
 
 _RGB = (
-    (135, 195, 255),
-    (255, 0, 30),
-    (150, 60, 255),
-    (210, 255, 0),
-    (210, 135, 120),
-    (225, 15, 165),
-    (105, 255, 195),
-    (225, 195, 90),
-    (15, 135, 0),
-    (195, 240, 240),
-    (120, 120, 75),
-    (195, 75, 210),
-    (150, 255, 135),
-    (195, 135, 165),
-    (225, 30, 120),
-    (90, 120, 120),
-    (195, 180, 165),
-    (120, 150, 255),
-    (240, 180, 0),
-    (240, 240, 90),
-    (180, 210, 150),
-    (210, 120, 60),
-    (75, 120, 165),
-    (180, 135, 210),
-    (150, 105, 255),
-    (225, 210, 255),
-    (120, 180, 90),
-    (0, 210, 210),
+    *((135, 195, 255), (255, 0, 30), (150, 60, 255), (210, 255, 0), (210, 135, 120), (225, 15, 165), (105, 255, 195)),
+    *((225, 195, 90), (15, 135, 0), (195, 240, 240), (120, 120, 75), (195, 75, 210), (150, 255, 135), (195, 135, 165)),
+    *((225, 30, 120), (90, 120, 120), (195, 180, 165), (120, 150, 255), (240, 180, 0), (240, 240, 90), (180, 210, 150)),
+    *((210, 120, 60), (75, 120, 165), (180, 135, 210), (150, 105, 255), (225, 210, 255), (120, 180, 90), (0, 210, 210)),
 )
 PALETTE: tuple[Colour, ...] = tuple((r / 255.0, g / 255.0, b / 255.0) for r, g, b in _RGB)
 """The 28 colours of a grid whose least distance is greatest: the least of that for full protanopia, deuteranopia and
@@ -59,20 +32,18 @@ tritanopia (Machado et al. 2009), and of 1/1.8 of that for normal vision. Found 
 from many random beginnings; in the order in which each is farthest from all before it. Lightness 48 to 94, so that
 shading and black lines show."""
 
-
-def colour(k: int) -> Colour:
-    """The k-th colour; they repeat after ``len(PALETTE)``, and numbers in the picture tell equal ones apart."""
-    return PALETTE[k % len(PALETTE)]
-
-
-Image = NDArray[np.uint8]
-
-STRIP_PX = 58
-"""Height of the strips above and below a picture that hold the numbers."""
+STRIP_PX = 58  #: Height of the strips above and below a picture that hold the numbers.
 _BALLOON_PX = 15  # radius
 _BAR_SHARE = 0.25  # greatest length of a scale bar over the picture's width
 _ROW_PX = 34  # of the legend, at most
 _BLACK, _GREY = (0, 0, 0), (90, 90, 90)
+
+Image = NDArray[np.uint8]
+
+
+def colour(k: int) -> Colour:
+    """Return the k-th colour; they repeat after ``len(PALETTE)``, and numbers in the picture tell equal ones apart."""
+    return PALETTE[k % len(PALETTE)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,7 +65,7 @@ class Balloon:
 
 
 def labelled(drawn: Drawn, legend: Sequence[Row], *, legend_width: int = 330) -> Image:
-    """The picture with a scale bar, and with numbers and a legend if there are rows; wider by the legend."""
+    """Return the picture with a scale bar, and with numbers and a legend if there are rows; wider by the legend."""
     from PIL import Image as Pillow
     from PIL import ImageDraw
 
@@ -116,7 +87,7 @@ def labelled(drawn: Drawn, legend: Sequence[Row], *, legend_width: int = 330) ->
 
 
 def _seen(numbers: NDArray[np.int64], legend: Sequence[Row]) -> tuple[NDArray[np.int64], list[Row]]:
-    """Pixels and rows with the bodies that can be seen numbered from 1."""
+    """Return pixels and rows with the bodies that can be seen numbered from 1."""
     seen = set(_present(numbers))
     rows = [row for row in legend if row.number in seen]
     new = np.zeros(1 + max(row.number for row in legend), dtype=np.int64)
@@ -126,43 +97,37 @@ def _seen(numbers: NDArray[np.int64], legend: Sequence[Row]) -> tuple[NDArray[np
 
 
 def _present(numbers: NDArray[np.int64]) -> list[int]:
-    """The different numbers of a picture, all of which are small, in rising order."""
+    """Return the different numbers of a picture, all of which are small, in rising order."""
     return np.flatnonzero(np.bincount(numbers.ravel())).tolist()
 
 
 def bar_mm(px_per_mm: float, width_px: int) -> float:
-    """The longest of 1, 2, 5, 10, 20, 50 ... mm that takes at most a quarter of the picture's width."""
+    """Return the longest of 1, 2, 5, 10, 20, 50 ... mm that takes at most a quarter of the picture's width."""
     most = _BAR_SHARE * width_px / px_per_mm
     decade = 10.0 ** np.floor(np.log10(most))
     return float(max(step * decade for step in (1.0, 2.0, 5.0) if step * decade <= most * (1.0 + 1e-9)))
 
 
 def balloons(numbers: NDArray[np.int64]) -> list[Balloon]:
-    """Where the number of each visible body goes: above or below the picture, in the order of what they point to.
+    """Return where the number of each visible body goes: above or below the picture, in the order of their points.
 
-    Args:
-        numbers: of the body at each pixel, 0 for none, shape (height, width).
+    ``numbers`` has the number of the body at each pixel, 0 for none; shape (height, width).
     """
     height, width = numbers.shape
     inside = [(number, *_innermost(numbers == number)) for number in _present(numbers) if number]
     by_height = sorted(inside, key=lambda found: found[2])
     half = (len(by_height) + 1) // 2
-    rows = ((by_height[:half], 0.5 * STRIP_PX), (by_height[half:], height + 1.5 * STRIP_PX))
-    return [
-        Balloon(number=number, at=(at, line), point=(x, y + STRIP_PX))
-        for row, line in rows
-        for at, (number, x, y) in zip(
-            _spread([x for _, x, _ in sorted(row, key=_x)], width), sorted(row, key=_x), strict=True
-        )
-    ]
-
-
-def _x(found: tuple[int, float, float]) -> float:
-    return found[1]
+    found = []
+    for row, line in ((by_height[:half], 0.5 * STRIP_PX), (by_height[half:], height + 1.5 * STRIP_PX)):
+        ordered = sorted(row, key=lambda found: found[1])
+        places = _spread([x for _, x, _ in ordered], width)
+        for at, (number, x, y) in zip(places, ordered, strict=True):
+            found.append(Balloon(number=number, at=(at, line), point=(x, y + STRIP_PX)))
+    return found
 
 
 def _innermost(mask: NDArray[np.bool_]) -> tuple[float, float]:
-    """The point of a region that is farthest from its edge: to the right and down, in pixels."""
+    """Return the point of a region that is farthest from its edge: to the right and down, in pixels."""
     from scipy.ndimage import distance_transform_cdt
 
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
@@ -175,7 +140,7 @@ def _innermost(mask: NDArray[np.bool_]) -> tuple[float, float]:
 
 
 def _spread(wanted: Sequence[float], width: int) -> list[float]:
-    """Places in rising order as near as possible to the wanted ones, so far apart that balloons do not touch."""
+    """Return places in rising order near the wanted ones, so far apart that balloons do not touch."""
     apart = 2.0 * _BALLOON_PX + 6.0
     if len(wanted) * apart > width:
         apart = width / len(wanted)
@@ -201,7 +166,6 @@ def _balloon(pen: "ImageDraw", balloon: Balloon) -> None:
 
 
 def _scale_bar(pen: "ImageDraw", px_per_mm: float, width: int, bottom: int, *, left: float = 0.0) -> None:
-    """A black and white bar of a round length, as the picture of this width needs it."""
     length = bar_mm(px_per_mm, width)
     start, top = left + 16.0, bottom - 22.0
     end = start + length * px_per_mm
@@ -232,7 +196,7 @@ def _font(size: float) -> "FreeTypeFont":
 
 
 def numbered(names: Mapping[str, int], colours: Mapping[str, Colour]) -> Iterator[Row]:
-    """Rows of a legend from names with their counts, numbered from 1 in their order."""
+    """Yield rows of a legend from names with their counts, numbered from 1 in their order."""
     for k, (name, count) in enumerate(names.items(), 1):
         text = name.replace("_", " ") + (f" ({count})" if count > 1 else "")
         yield Row(number=k, text=text, colour=colours[name])

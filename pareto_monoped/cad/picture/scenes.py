@@ -1,10 +1,10 @@
-"""The pictures of an export: the robot, sections of actuators and knee with numbers and legend, an exploded view.
+"""The pictures of an export: the robot, sections with numbers and legend, exploded views, and the steps of assembly.
 
-Exploded views of the steps of assembly: what is together is grey, what comes to it is coloured and pulled away.
+In the steps, what is together is grey; what comes to it is coloured and pulled away.
 """
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import manifold3d as m3
@@ -22,44 +22,51 @@ from pareto_monoped.geometry.roles import Visibility
 Image = NDArray[np.uint8]
 Floats = NDArray[np.float64]
 
-_FROM_THE_RIGHT = View(towards=(-0.55, 1.0, -0.32))
-"""From the side of the knee actuator, from in front and above."""
+_FROM_THE_RIGHT = View(towards=(-0.55, 1.0, -0.32))  # from the side of the knee actuator, from in front and above
 _ALONG_X = View(towards=(-0.35, 1.0, -0.22), up=(0.0, 0.0, 1.0))
 _KNEE_AROUND_MM = 62.0
 """Half of the box around the knee joint that its section shows: the bearings with a part of either link."""
+_TOLERANCE_MM = 0.2
+_GREY = (0.80, 0.81, 0.83)
+_APART_MM = 12.0
+_WIDTH, _HEIGHT = 640, 480
+_AXES = "xyz"
+_VIEWS = {True: View(towards=(-0.75, -0.55, -0.35)), False: View(towards=(-0.75, 0.55, -0.35))}
+"""From the left of the robot, and from its right."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scene:
     """All that a picture is drawn from; it refers to nothing of the product, so another thread can draw it."""
 
-    bodies: tuple[Body, ...]  #: what to draw
-    view: View  #: the direction of view
-    #: width, height: of the picture, in pixels, without the legend and the strips for its numbers
-    width: int
-    height: int
+    bodies: tuple[Body, ...]
+    view: View
+    width: int  #: in pixels, without the legend
+    height: int  #: in pixels, without the strips for numbers
     legend: tuple[Row, ...] = ()  #: one row per part
 
     def picture(self) -> Image:
         """Draw it."""
-        drawn = draw(self.bodies, self.view, width=self.width, height=self.height)
-        return labelled(drawn, self.legend)
+        return labelled(draw(self.bodies, self.view, width=self.width, height=self.height), self.legend)
 
 
 def assembly_scene(product: Product, *, width: int = 900, height: int = 1080) -> Scene:
-    """The robot in its pose."""
-    bodies = []
-    for instance, unique in product.placed():
-        if instance.part.visibility is Visibility.INSIDE:
-            continue
-        bodies.append(_body(unique.mesh, instance.world, unique.part.material.colour))
-    return Scene(bodies=tuple(bodies), view=_FROM_THE_RIGHT, width=width, height=height)
+    """Return the robot in its pose."""
+    bodies = tuple(
+        _body(unique.mesh, instance.world, unique.part.material.colour)
+        for instance, unique in product.placed()
+        if instance.part.visibility is not Visibility.INSIDE
+    )
+    return Scene(bodies=bodies, view=_FROM_THE_RIGHT, width=width, height=height)
 
 
 def section_scene(product: Product, unit_name: str, *, width: int = 1000, height: int = 820) -> Scene:
-    """An actuator with a quarter cut away, its output to the left, each part in its own colour."""
+    """Return an actuator with a quarter cut away, its output to the left, each part in its own colour."""
     unit = next(unit for unit in product.robot.units if unit.name == unit_name)
-    upright = _axis_to_the_left() @ np.linalg.inv(unit_frame(unit))
+    # The axis along -x of the scene, output to the left; the first planet on top.
+    turned = np.zeros((4, 4))
+    turned[0, 2], turned[1, 1], turned[2, 0], turned[3, 3] = -1.0, 1.0, 1.0, 1.0
+    upright = turned @ np.linalg.inv(unit_frame(unit))
     members = [
         (instance, placed(unique.mesh.body, upright @ instance.in_body))
         for instance, unique in product.placed()
@@ -69,7 +76,7 @@ def section_scene(product: Product, unit_name: str, *, width: int = 1000, height
 
 
 def knee_scene(product: Product, *, width: int = 1000, height: int = 820) -> Scene:
-    """The knee joint with a quarter cut away: thigh, shank and what is between them, around the joint's axis."""
+    """Return the knee joint with a quarter cut away: thigh, shank and what is between them, around the joint's axis."""
     in_joint = np.linalg.inv(body_frames(product.robot, product.pose)["shank"])
     # Joint axis, which is y, to the left; what points up stays up.
     turned = np.zeros((4, 4))
@@ -81,13 +88,14 @@ def knee_scene(product: Product, *, width: int = 1000, height: int = 820) -> Sce
         if instance.unit in ACTUATOR_UNITS:
             continue
         near = placed(unique.mesh.body, turned @ in_joint @ instance.world)
-        if _boxes_meet(near.bounding_box(), half):
+        box = near.bounding_box()
+        if max(box[:3]) < half and min(box[3:]) > -half:
             members.append((instance, near ^ around))
     return _section([(i, body) for i, body in members if not body.is_empty()], width=width, height=height)
 
 
 def exploded_scene(product: Product, *, width: int = 1500, height: int = 1080) -> Scene:
-    """All parts of the robot pulled apart along the joints' axis, the units in their own colours."""
+    """Return all parts of the robot pulled apart along the joints' axis, the units in their own colours."""
     order = [unit.name for unit in product.robot.units]
     names = {name: sum(instance.unit == name for instance in product.instances) for name in order}
     colours = {name: colour(k) for k, name in enumerate(order)}
@@ -99,13 +107,12 @@ def exploded_scene(product: Product, *, width: int = 1500, height: int = 1080) -
         at = instance.world.copy()
         at[1, 3] += move
         bodies.append(_body(unique.mesh, at, colours[instance.unit], number[instance.unit]))
-    view = View(towards=(-1.0, 0.62, -0.42))
-    rows = tuple(numbered(names, colours))
+    view, rows = View(towards=(-1.0, 0.62, -0.42)), tuple(numbered(names, colours))
     return Scene(bodies=tuple(bodies), view=view, width=width, height=height, legend=rows)
 
 
 def _section(members: Sequence[tuple[Instance, m3.Manifold]], *, width: int, height: int) -> Scene:
-    """Placed instances with a quarter cut away, one colour and number per kind of part."""
+    """Return placed instances with a quarter cut away, one colour and number per kind of part."""
     names = Counter(instance.part.name for instance, _ in members)
     colours = {name: colour(k) for k, name in enumerate(names)}
     number = {name: k for k, name in enumerate(names, 1)}
@@ -123,46 +130,25 @@ def _body(mesh: Mesh, at: Floats, hue: tuple[float, float, float], number: int =
     return Body(points_mm=points, triangles=mesh.triangles, colour=hue, number=number)
 
 
-def _axis_to_the_left() -> Floats:
-    """The actuator's axis along -x of the picture's scene, output to the left; the first planet on top."""
-    matrix = np.zeros((4, 4))
-    matrix[0, 2], matrix[1, 1], matrix[2, 0], matrix[3, 3] = -1.0, 1.0, 1.0, 1.0
-    return matrix
-
-
-def _boxes_meet(box: Iterable[float], half: float) -> bool:
-    x0, y0, z0, x1, y1, z1 = box
-    return max(x0, y0, z0) < half and min(x1, y1, z1) > -half
-
-
 def _without_quarter(body: m3.Manifold) -> m3.Manifold:
-    """The body without the quarter that lies towards the viewer and above the axis."""
+    """Return the body without the quarter that lies towards the viewer and above the axis."""
     far = body.trim_by_plane((0.0, 1.0, 0.0), 0.0)
     near_low = body.trim_by_plane((0.0, -1.0, 0.0), 0.0).trim_by_plane((0.0, 0.0, -1.0), 0.0)
     return m3.Manifold.compose([far, near_low])
-
-
-_TOLERANCE_MM = 0.2
-_GREY = (0.80, 0.81, 0.83)
-_APART_MM = 12.0
-_WIDTH, _HEIGHT = 640, 480
-_AXES = "xyz"
-_VIEWS = {True: View(towards=(-0.75, -0.55, -0.35)), False: View(towards=(-0.75, 0.55, -0.35))}
-"""From the left of the robot, and from its right."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stage:
     """All bodies of an assembly in their places, from which the pictures of its steps are made."""
 
-    blocking: Blocking  #: the bodies, and the sides from which fasteners are driven
+    blocking: Blocking
     corners_mm: tuple[Floats, ...]  #: per instance the points of its triangles, shape (n, 3)
     triangles: tuple[NDArray[np.int64], ...]  #: per instance the indices of its points, shape (m, 3)
     boxes: tuple[Floats, ...]  #: low and high corner of each body, shape (2, 3)
     _seen: dict[tuple[int, bool], Faces] = field(default_factory=dict)
 
     def faces(self, instance: int, from_left: bool) -> Faces:
-        """What one of the two viewers sees of an instance; most steps show it again."""
+        """Return what one of the two viewers sees of an instance; most steps show it again."""
         if (instance, from_left) not in self._seen:
             seen = faces_of(self.corners_mm[instance], self.triangles[instance], _VIEWS[from_left].axes())
             self._seen[instance, from_left] = seen
@@ -170,7 +156,7 @@ class Stage:
 
 
 def stage_of(blocking: Blocking, placed: Sequence[Instance]) -> Stage:
-    """The stage of an assembly from its instances in their places."""
+    """Return the stage of an assembly from its instances in their places."""
     parts = {id(instance.part): instance.part for instance in placed}
     shells = {key: shell_of(part, _TOLERANCE_MM) for key, part in parts.items()}
     corners, triangles = [], []
@@ -185,8 +171,8 @@ def stage_of(blocking: Blocking, placed: Sequence[Instance]) -> Stage:
     return Stage(blocking=blocking, corners_mm=tuple(corners), triangles=tuple(triangles), boxes=tuple(boxes))
 
 
-def step_picture(step: Step, stage: Stage) -> NDArray[np.uint8]:
-    """The picture of a step, seen from the side from which most comes."""
+def step_picture(step: Step, stage: Stage) -> Image:
+    """Return the picture of a step, seen from the side from which most comes."""
     blocking, boxes = stage.blocking, stage.boxes
     moves: dict[int, Floats] = {}
     groups = [(addition.members, addition.out) for addition in step.additions]
@@ -215,20 +201,18 @@ def step_picture(step: Step, stage: Stage) -> NDArray[np.uint8]:
 
 
 def _legend(fresh: Sequence[int], blocking: Blocking) -> tuple[dict[int, int], tuple[Row, ...]]:
-    """The number of each new body, and a row per kind of part."""
-    names: dict[tuple[str, str], int] = {}
+    """Return the number of each new body, and a row per kind of part of a unit."""
+    numbers: dict[tuple[str, str], int] = {}
     counts: list[int] = []
     number = {}
     for k in fresh:
         body = blocking.bodies[k]
-        key = (body.unit, body.instance.part.name)
-        if key not in names:
-            names[key] = len(names) + 1
-            counts.append(0)
-        number[k] = names[key]
-        counts[names[key] - 1] += len(body.instances)
+        row = numbers.setdefault((body.unit, body.instance.part.name), len(numbers) + 1)
+        counts += [0] * (row - len(counts))
+        number[k] = row
+        counts[row - 1] += len(body.instances)
     rows = []
-    for (_, name), row in names.items():
+    for (_, name), row in numbers.items():
         count = f" ({counts[row - 1]})" if counts[row - 1] > 1 else ""
         rows.append(Row(number=row, text=name.replace("_", " ") + count, colour=colour(row - 1)))
     return number, tuple(rows)
@@ -237,7 +221,7 @@ def _legend(fresh: Sequence[int], blocking: Blocking) -> tuple[dict[int, int], t
 def _way(
     members: frozenset[int], there: set[int], out: str, boxes: Sequence[Floats], moves: Mapping[int, Floats]
 ) -> Floats:
-    """How far a set moves out until it has passed all that lies before it, shape (3,)."""
+    """Return how far a set moves out until it has passed all that lies before it, shape (3,)."""
     axis, sign = _AXES.index(out[1]), 1.0 if out[0] == "+" else -1.0
     others = [k for k in range(3) if k != axis]
     distance = 0.0

@@ -3,20 +3,10 @@
 Each prism is an extruded polygon. manifold3d unites the prisms of a part and keeps the mesh closed. Polygons stay
 within ``TOLERANCE_MM`` of their arcs, which changes the volume of thin round parts by at most a few thousandths.
 
-Meshes must also be closed in their files, see ``closed``. Points that would merge there are welded, and parts that
-touch are moved apart.
-
-Bevels on a closed triangle mesh: the edge of a cylinder becomes a cone between two edges. Millimetres.
-
-Boolean operations would do the same at twenty times the cost and leave slivers. Here the cap of the face is
-triangulated anew around the wider or narrower circle, the cylinder's edge slides along the axis to where the cone meets
-it, and a strip of triangles joins both.
-
-Is a mesh closed for the program that reads its file?
-
 An STL file has no shared points. Its reader merges the corners of triangles that stand at the same place, after they
 were rounded to single precision. A mesh that is closed in memory may therefore be open in its file: close points merge
-and leave triangles without area, and parts that touch get edges that border four triangles.
+and leave triangles without area, and parts that touch get edges that border four triangles. Points that would merge are
+therefore welded, and parts that touch are moved apart.
 """
 
 from collections.abc import Iterable, Sequence
@@ -31,26 +21,44 @@ from pareto_monoped.cad.shape.outlines import all_polygons
 from pareto_monoped.cad.shape.stacks import is_on, regrouped
 from pareto_monoped.geometry.features import Bevel
 from pareto_monoped.geometry.parts import Ball, Part, Prism
+from pareto_monoped.geometry.shapes import Shape
 
 Points = NDArray[np.float64]
 Triangles = NDArray[np.int64]
 
 _LEAST_FACETS = 3
 _ON_EDGE_MM = 1e-6  # from the edge of a cylinder to its points; far above rounding, far below the shortest facet
+TOLERANCE_MM = 0.01
+WELD_MM = 1e-4
+"""Shorter edges are welded. A robot's mesh in metres has single-precision numbers 0.00006 mm apart at most (at 1 m)."""
+APART_MM = 1e-3
+"""How far touching parts are moved apart: many such numbers, and 1 percent of the coarsest mesh's tolerance."""
+MERGED = 1e-8
+"""Corners are merged when their coordinates are equal after rounding to this, in the file's unit (as in trimesh)."""
+# Odd numbers without pattern (digits of pi, e and the golden section), for sums modulo 2^64 that tell places apart: two
+# of a million places get the same number with a probability of 3e-8.
+_PLACE = np.array([0x243F6A8885A308D3, 0xB7E151628AED2A6B, 0x9E3779B97F4A7C15], dtype=np.uint64)
+_START, _END = np.uint64(0x13198A2E03707345), np.uint64(0xBF7158809CF4F3C7)
+
+Numbers = NDArray[np.uint64]
+
+
+def cross_section(shapes: Sequence[Shape], tolerance_mm: float = TOLERANCE_MM) -> m3.CrossSection:
+    """Return the union of flat shapes, whose curves are polygons within a tolerance."""
+    return m3.CrossSection(all_polygons(shapes, tolerance_mm), m3.FillRule.NonZero)
 
 
 def has_cone(bevel: Bevel) -> bool:
-    """Whether there is a ring between cone and cylinder."""
+    """Return whether there is a ring between cone and cylinder."""
     return float(bevel.edge_mm) != float(bevel.at.radius_mm)
 
 
 def beveled(points_mm: Points, triangles: Triangles, bevels: Iterable[Bevel]) -> tuple[Points, Triangles]:
-    """The mesh with cones on the edges of its cylinders.
+    """Return the mesh with cones on the edges of its cylinders: each edge becomes a cone between two edges.
 
-    Args:
-        points_mm: shape (n, 3).
-        triangles: indices of points, anticlockwise from outside, shape (m, 3).
-        bevels: of plain numbers.
+    Boolean operations would do the same at twenty times the cost and leave slivers. Here the cap of the face is
+    triangulated anew around the wider or narrower circle, the cylinder's edge slides along the axis to where the cone
+    meets it, and a strip of triangles joins both. ``triangles`` are anticlockwise from outside.
 
     Raises:
         ValueError: a bevel stands on no edge of the mesh, or is deeper than its cylinder.
@@ -68,7 +76,7 @@ def beveled(points_mm: Points, triangles: Triangles, bevels: Iterable[Bevel]) ->
 def _face_beveled(
     points: Points, triangles: Triangles, face_mm: float, upward: bool, rings: list[tuple[Bevel, float, float]]
 ) -> tuple[Points, Triangles]:
-    """All bevels of one plane across the axis, in caps that look up or down."""
+    """Return all bevels of one plane across the axis, in caps that look up or down."""
     in_plane = np.abs(points[:, 2] - face_mm) < _ON_EDGE_MM
     cap = np.all(in_plane[triangles], axis=1)
     cap[cap] = (_doubled_area(points[triangles[cap]]) > 0.0) == upward
@@ -106,22 +114,21 @@ def _face_beveled(
 
 
 def _doubled_area(corners: Points) -> NDArray[np.float64]:
-    """Twice the area of triangles seen from above, negative if they look down; ``corners`` has the shape (n, 3, 3)."""
+    """Return twice the area of triangles seen from above, negative if they look down; corners: shape (n, 3, 3)."""
     one, other = corners[:, 1, :2] - corners[:, 0, :2], corners[:, 2, :2] - corners[:, 0, :2]
     return np.asarray(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])
 
 
 def _border(triangles: Triangles) -> Triangles:
-    """Directed edges of triangles that no neighbour has the other way round, shape (n, 2)."""
+    """Return the directed edges of triangles that no neighbour has the other way round, shape (n, 2)."""
     edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
     low, high = edges.min(axis=1), edges.max(axis=1)
     _, where, counts = np.unique(low * (edges.max(initial=0) + 1) + high, return_index=True, return_counts=True)
-    single: Triangles = edges[np.sort(where[counts == 1])]
-    return single
+    return np.asarray(edges[np.sort(where[counts == 1])])
 
 
 def _filled(points: Points, border: Triangles, upward: bool) -> Triangles:
-    """Triangles that fill closed lines in a plane across the axis."""
+    """Return triangles that fill closed lines in a plane across the axis."""
     loops = _loops(border)
     seen = np.array([1.0, 1.0 if upward else -1.0])  # from the side to which they look, the lines run anticlockwise
     corners = np.asarray(m3.triangulate([points[loop, :2] * seen for loop in loops]), dtype=np.int64)
@@ -129,7 +136,6 @@ def _filled(points: Points, border: Triangles, upward: bool) -> Triangles:
 
 
 def _loops(border: Triangles) -> list[NDArray[np.int64]]:
-    """Closed lines from directed edges."""
     following = dict(border.tolist())
     loops = []
     while following:
@@ -142,41 +148,23 @@ def _loops(border: Triangles) -> list[NDArray[np.int64]]:
     return loops
 
 
-MERGED = 1e-8
-"""Corners are merged when their coordinates are equal after rounding to this, in the file's unit (as in trimesh)."""
-# Odd numbers without pattern (digits of pi, e and the golden section), for sums modulo 2^64 that tell places apart: two
-# of a million places get the same number with a probability of 3e-8.
-_PLACE = np.array([0x243F6A8885A308D3, 0xB7E151628AED2A6B, 0x9E3779B97F4A7C15], dtype=np.uint64)
-_START, _END = np.uint64(0x13198A2E03707345), np.uint64(0xBF7158809CF4F3C7)
-
-Numbers = NDArray[np.uint64]
-
-
 def place_numbers(points: NDArray[np.floating]) -> Numbers:
-    """A number for each point, equal for the points that a reader merges.
-
-    Args:
-        points: in the file's unit, shape (..., 3).
-    """
+    """Return a number per point, equal for points that a reader merges; shape (..., 3), in the file's unit."""
     rounded = np.rint(points.astype(np.float32).astype(np.float64) / MERGED).astype(np.int64).view(np.uint64)
     x, y, z = np.moveaxis(rounded, -1, 0)
-    numbers: Numbers = x * _PLACE[0] + y * _PLACE[1] + z * _PLACE[2]
-    return numbers
+    return np.asarray(x * _PLACE[0] + y * _PLACE[1] + z * _PLACE[2])
 
 
 def edge_numbers(start: Numbers, end: Numbers) -> Numbers:
-    """A number for each directed edge, from the numbers of its ends."""
-    numbers: Numbers = start * _START + end * _END
-    return numbers
+    """Return a number for each directed edge, from the numbers of its ends."""
+    return np.asarray(start * _START + end * _END)
 
 
 def flaws(corners: NDArray[np.floating]) -> str:
-    """What keeps triangles from enclosing a volume, in words; empty if nothing does.
+    """Return what keeps triangles from enclosing a volume, in words; empty if nothing does.
 
-    Every edge must border two triangles, which run along it in opposite directions.
-
-    Args:
-        corners: of the triangles, as they are in the file, shape (n, 3, 3).
+    Every edge must border two triangles, which run along it in opposite directions. ``corners`` are as in the file,
+    shape (n, 3, 3).
     """
     here = place_numbers(corners)
     following = here[:, [1, 2, 0]]
@@ -195,24 +183,17 @@ def flaws(corners: NDArray[np.floating]) -> str:
 
 
 def volume(corners: NDArray[np.floating]) -> float:
-    """Volume that closed triangles enclose, in the cube of the file's unit."""
+    """Return the volume that closed triangles enclose, in the cube of the file's unit."""
     a, b, c = np.moveaxis(corners.astype(np.float64), 1, 0)
     return float(np.sum(a * np.cross(b, c)) / 6.0)
-
-
-TOLERANCE_MM = 0.01
-WELD_MM = 1e-4
-"""Shorter edges are welded. A robot's mesh in metres has single-precision numbers 0.00006 mm apart at most (at 1 m)."""
-APART_MM = 1e-3
-"""How far touching parts are moved apart: many such numbers, and 1 percent of the coarsest mesh's tolerance."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mesh:
     """Triangles of one part in its own frame."""
 
-    points_mm: NDArray[np.float64]  #: shape (n, 3)
-    triangles: NDArray[np.int64]  #: indices of points, anticlockwise from outside, shape (m, 3)
+    points_mm: Points  #: shape (n, 3)
+    triangles: Triangles  #: indices of points, anticlockwise from outside, shape (m, 3)
     body: m3.Manifold  #: the same as a manifold, for intersections
 
     @property
@@ -222,7 +203,7 @@ class Mesh:
 
 
 def mesh_of(part: Part, tolerance_mm: float = TOLERANCE_MM) -> Mesh:
-    """The mesh of one instance of a part in its own frame."""
+    """Return the mesh of one instance of a part in its own frame."""
     return _mesh(part.prisms, part.balls, part.bevels, tolerance_mm)
 
 
@@ -233,7 +214,8 @@ def _mesh(prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple[Beve
     mesh = _united(stack, balls, bevels, tolerance_mm)
     # Prisms are apart by rounding if one ends at z0 + (z1 - z0) and the next begins at z1. Multiples of 2^-40 mm add up
     # exactly. They are not used for every part, since other heights order the triangles in another way.
-    if not _has_twins(mesh):
+    numbers = np.sort(place_numbers(mesh.points_mm))
+    if np.all(numbers[1:] != numbers[:-1]):
         return mesh
     return _united([_exact(prism) for prism in stack], balls, bevels, tolerance_mm)
 
@@ -246,14 +228,11 @@ def _united(prisms: Sequence[Prism], balls: Sequence[Ball], bevels: Sequence[Bev
     return _welded(mesh)
 
 
-def shell_of(part: Part, tolerance_mm: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Triangles that show a part: its prisms and balls one by one, with the cones on them, in its own frame.
+def shell_of(part: Part, tolerance_mm: float) -> tuple[Points, Triangles]:
+    """Return triangles that show a part: its prisms and balls one by one, with the cones on them, in its own frame.
 
     The pieces are not united, which would take four fifths of the time: inside the part there are faces that nobody
     sees. A cone on an edge that only the united part has is left out.
-
-    Returns:
-        points in millimetres, shape (n, 3), and indices of points, shape (m, 3).
     """
     return _shell(part.prisms, part.balls, part.bevels, tolerance_mm)
 
@@ -261,13 +240,12 @@ def shell_of(part: Part, tolerance_mm: float) -> tuple[NDArray[np.float64], NDAr
 @lru_cache(maxsize=256)
 def _shell(
     prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple[Bevel, ...], tolerance_mm: float
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+) -> tuple[Points, Triangles]:
     left = [bevel for bevel in bevels if has_cone(bevel)]
     points, triangles, count = [], [], 0
     pieces: list[Prism | Ball] = [*regrouped(prisms), *balls]
     for piece in pieces:
-        body = _extruded(piece, tolerance_mm) if isinstance(piece, Prism) else _ball(piece, tolerance_mm)
-        mesh = mesh_from(body)
+        mesh = mesh_from(_extruded(piece, tolerance_mm) if isinstance(piece, Prism) else _ball(piece, tolerance_mm))
         own = [bevel for bevel in left if isinstance(piece, Prism) and is_on(bevel, piece)]
         left = [bevel for bevel in left if bevel not in own]
         corners, faces = beveled(mesh.points_mm, mesh.triangles, own)
@@ -278,19 +256,13 @@ def _shell(
 
 
 def _exact(prism: Prism) -> Prism:
-    """The prism with its ends rounded to multiples of 2^-40 mm."""
+    """Return the prism with its ends rounded to multiples of 2^-40 mm."""
     z0, z1 = (float(np.ldexp(np.rint(np.ldexp(float(z), 40)), -40)) for z in (prism.z0_mm, prism.z1_mm))
     return replace(prism, z0_mm=z0, z1_mm=z1)
 
 
-def _has_twins(mesh: Mesh) -> bool:
-    """Whether two points of a mesh are one in a file."""
-    numbers = np.sort(place_numbers(mesh.points_mm))
-    return bool(np.any(numbers[1:] == numbers[:-1]))
-
-
 def mesh_from(body: m3.Manifold) -> Mesh:
-    """The triangles of a manifold."""
+    """Return the triangles of a manifold."""
     raw = body.to_mesh64()
     return Mesh(
         points_mm=np.asarray(raw.vert_properties)[:, :3].astype(np.float64),
@@ -299,22 +271,19 @@ def mesh_from(body: m3.Manifold) -> Mesh:
     )
 
 
-def _mesh_of(points_mm: NDArray[np.float64], triangles: NDArray[np.int64]) -> Mesh:
-    """Triangles with the manifold that they bound."""
-    body = m3.Manifold(m3.Mesh64(points_mm, triangles.astype(np.uint64)))
-    return Mesh(points_mm=points_mm, triangles=triangles, body=body)
+def _mesh_of(points_mm: Points, triangles: Triangles) -> Mesh:
+    return Mesh(
+        points_mm=points_mm, triangles=triangles, body=m3.Manifold(m3.Mesh64(points_mm, triangles.astype(np.uint64)))
+    )
 
 
 def joined(members: Sequence[tuple[Mesh, NDArray[np.float64]]], scale: float = 1.0) -> Mesh:
-    """Meshes that do not cut each other as one, each moved by its 4 x 4 matrix.
+    """Return meshes that do not cut each other as one, each moved by its 4 x 4 matrix.
 
-    Where members have edges in common, these would border four triangles in a file; the later members are then moved
-    along y, the joints' axis, by as many micrometres as it takes. The meshes are put together here, since manifold3d
-    orders triangles by when their meshes were made, which is not the same in every process.
-
-    Args:
-        members: meshes with their matrices.
-        scale: from millimetres to the unit of the file that is to hold them.
+    Where members have edges in common, these would border four triangles in a file, whose unit is ``scale`` times a
+    millimetre; the later members are then moved along y, the joints' axis, by as many micrometres as it takes. The
+    meshes are put together here, since manifold3d orders triangles by when their meshes were made, which is not the
+    same in every process.
     """
     starts = np.cumsum([0, *(len(mesh.points_mm) for mesh, _ in members)])
     points = np.concatenate([mesh.points_mm @ matrix[:3, :3].T + matrix[:3, 3] for mesh, matrix in members])
@@ -331,12 +300,12 @@ def joined(members: Sequence[tuple[Mesh, NDArray[np.float64]]], scale: float = 1
 
 
 def placed(body: m3.Manifold, matrix: NDArray[np.float64]) -> m3.Manifold:
-    """A manifold moved by a 4 x 4 matrix."""
+    """Return a manifold moved by a 4 x 4 matrix."""
     return body.transform(matrix[:3, :])
 
 
 def _welded(mesh: Mesh) -> Mesh:
-    """The same mesh with the ends of edges shorter than ``WELD_MM`` made one point."""
+    """Return the same mesh with the ends of edges shorter than ``WELD_MM`` made one point."""
     edges = np.concatenate([mesh.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
     short = np.all(np.abs(mesh.points_mm[edges[:, 0]] - mesh.points_mm[edges[:, 1]]) < WELD_MM, axis=1)
     if not short.any():
@@ -350,14 +319,8 @@ def _welded(mesh: Mesh) -> Mesh:
     return Mesh(points_mm=mesh.points_mm[used], triangles=triangles.reshape(-1, 3), body=mesh.body)
 
 
-def _touching(points: NDArray[np.float64], triangles: NDArray[np.int64], owners: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Members that have an edge in common with an earlier member; of several with the same edge at least the last.
-
-    Args:
-        points: in the file's unit, shape (n, 3).
-        triangles: indices of points, shape (m, 3).
-        owners: to which member each point belongs, shape (n,).
-    """
+def _touching(points: Points, triangles: Triangles, owners: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return members that share an edge with an earlier one; of several with one edge at least the last."""
     here = place_numbers(points)
     start, end = here[triangles].ravel(), here[triangles[:, [1, 2, 0]]].ravel()
     # One direction is enough: the edges of a closed member run in both.
@@ -371,9 +334,9 @@ def _touching(points: NDArray[np.float64], triangles: NDArray[np.int64], owners:
 
 
 def _extruded(prism: Prism, tolerance_mm: float) -> m3.Manifold:
-    outline = m3.CrossSection(all_polygons([prism.outline], tolerance_mm), m3.FillRule.NonZero)
+    outline = cross_section([prism.outline], tolerance_mm)
     if prism.holes:
-        outline = outline - m3.CrossSection(all_polygons(prism.holes, tolerance_mm), m3.FillRule.NonZero)
+        outline = outline - cross_section(prism.holes, tolerance_mm)
     z0, z1 = float(prism.z0_mm), float(prism.z1_mm)
     return outline.extrude(z1 - z0).translate((0.0, 0.0, z0))
 

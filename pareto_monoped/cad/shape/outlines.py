@@ -1,11 +1,7 @@
-"""Flat shapes as closed curves: what solids, meshes and drawings are made from. Millimetres.
+"""Flat shapes as closed curves of lines, arcs and splines, and polygons along them. Millimetres, radians.
 
-Closed curves of lines, arcs and splines, and polygons along them. Millimetres.
-
-Outlines of involute spur gears with root fillets and backlash. Millimetres, radians.
-
-Geometry after ISO 21771 (involute function, tooth thickness at any radius). The root is an arc tangent to the root
-circle and to the flank, of 0.38 module by default, the root radius of the basic rack of ISO 53. A curve
+Involute spur gears follow ISO 21771 (involute function, tooth thickness at any radius). The root is an arc tangent to
+the root circle and to the flank, of 0.38 module by default, the root radius of the basic rack of ISO 53. A curve
 parallel to an involute is the same involute turned by (distance / base radius), which places the fillet's centre.
 """
 
@@ -21,6 +17,7 @@ from pareto_monoped.geometry.shapes import Arc, Circle, Line, Path, Pattern, Sha
 
 Points = NDArray[np.float64]
 _COARSEST_STEP = 2.0 * np.pi / 48  # keeps the volume of thin bolts within 0.3 percent
+_FLANK_POINTS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,16 +27,24 @@ class Spline:
     points_mm: Points
 
 
+Piece = Line | Arc | Spline
+
+
 @dataclass(frozen=True, slots=True)
 class Contour:
     """A closed curve: pieces that join end to end, anticlockwise; or a full circle."""
 
-    pieces: tuple[Line | Arc | Spline, ...] = ()
+    pieces: tuple[Piece, ...] = ()
     circle: Circle | None = None
 
 
-def ends(piece: Line | Arc | Spline) -> tuple[Points, Points]:
-    """First and last point of a piece."""
+def centres_mm(shape: Circle | Pattern) -> list[tuple[float, float]]:
+    """Return where the discs of a shape have their centres."""
+    return shape.centres_mm() if isinstance(shape, Pattern) else [(float(shape.x_mm), float(shape.y_mm))]
+
+
+def ends(piece: Piece) -> tuple[Points, Points]:
+    """Return the first and the last point of a piece."""
     if isinstance(piece, Line):
         return np.array([piece.x0_mm, piece.y0_mm]), np.array([piece.x1_mm, piece.y1_mm])
     if isinstance(piece, Spline):
@@ -48,18 +53,15 @@ def ends(piece: Line | Arc | Spline) -> tuple[Points, Points]:
 
 
 def on_arc(arc: Arc, angle_rad: float) -> Points:
-    """The point of an arc at an angle."""
-    return np.array(
-        [arc.x_mm + arc.radius_mm * np.cos(angle_rad), arc.y_mm + arc.radius_mm * np.sin(angle_rad)], dtype=np.float64
-    )
+    """Return the point of an arc at an angle."""
+    x, y = arc.x_mm + arc.radius_mm * np.cos(angle_rad), arc.y_mm + arc.radius_mm * np.sin(angle_rad)
+    return np.array([x, y], dtype=np.float64)
 
 
 def polygon(contour: Contour, tolerance_mm: float = 0.01) -> Points:
-    """Points along a contour, shape (n, 2), that stay within ``tolerance_mm`` of its arcs."""
+    """Return points along a contour, shape (n, 2), that stay within ``tolerance_mm`` of its arcs."""
     if contour.circle is not None:
-        circle = contour.circle
-        full = Arc(circle.x_mm, circle.y_mm, circle.radius_mm, 0.0, 2.0 * np.pi)
-        return _arc_points(full, tolerance_mm)
+        return _arc_points(_full(contour.circle), tolerance_mm)
     rows = []
     for piece in contour.pieces:
         if isinstance(piece, Line):
@@ -72,24 +74,25 @@ def polygon(contour: Contour, tolerance_mm: float = 0.01) -> Points:
 
 
 def corners(contour: Contour) -> Points:
-    """Points of a contour among which are all its extremes along x and y, to rounding, shape (n, 2)."""
+    """Return points of a contour among which are all its extremes along x and y, to rounding, shape (n, 2)."""
     circle = contour.circle
-    if circle is not None:
-        arcs = [Arc(circle.x_mm, circle.y_mm, circle.radius_mm, 0.0, 2.0 * np.pi)]
-    else:
-        arcs = [piece for piece in contour.pieces if isinstance(piece, Arc)]
+    arcs = [piece for piece in contour.pieces if isinstance(piece, Arc)] if circle is None else [_full(circle)]
     tops = [on_arc(arc, angle) for arc in arcs for angle in _quarters(float(arc.start_rad), float(arc.end_rad))]
     return np.array([*polygon(contour), *tops])
 
 
+def _full(circle: Circle) -> Arc:
+    return Arc(circle.x_mm, circle.y_mm, circle.radius_mm, 0.0, 2.0 * np.pi)
+
+
 def _quarters(start_rad: float, end_rad: float) -> Points:
-    """The multiples of a right angle between two angles: there an arc is farthest along x or y."""
+    """Return the multiples of a right angle between two angles: there an arc is farthest along x or y."""
     low, high = sorted((start_rad, end_rad))
     return 0.5 * np.pi * np.arange(np.ceil(low / (0.5 * np.pi)), np.floor(high / (0.5 * np.pi)) + 1.0)
 
 
 def _arc_points(arc: Arc, tolerance_mm: float) -> Points:
-    """Points on an arc without its last one, which is the next piece's first."""
+    """Return points on an arc without its last one, which is the next piece's first."""
     sweep = float(arc.end_rad) - float(arc.start_rad)
     radius = float(arc.radius_mm)
     step = min(2.0 * np.arccos(max(1.0 - tolerance_mm / radius, 0.5)), _COARSEST_STEP)
@@ -99,21 +102,15 @@ def _arc_points(arc: Arc, tolerance_mm: float) -> Points:
     return centre + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
-Point = NDArray[np.float64]
-Pieces = tuple[Line | Arc | Spline, ...]
-_FLANK_POINTS = 8
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Teeth:
-    """What an outline needs of a gear, external or internal (``inner`` teeth pointing to the axis).
+    """What an outline needs of a gear, external or internal (``inner``: teeth point to the axis).
 
     For an internal gear the outline bounds the opening, whose tooth spaces have the form of an external gear's teeth.
     """
 
     count: int  #: number of teeth
     module_mm: float  #: pitch diameter over teeth
-    #: tip_radius_mm, root_radius_mm: of the teeth
     tip_radius_mm: float
     root_radius_mm: float
     backlash_mm: float = 0.0  #: by how much each tooth is thinner than half the pitch, along the pitch circle
@@ -142,24 +139,18 @@ class Teeth:
 
 
 def outline(teeth: Teeth) -> Contour:
-    """The closed outline of a gear, anticlockwise.
-
-    Raises:
-        ValueError: the fillet does not fit between the flanks.
-    """
+    """Return the closed outline of a gear, anticlockwise; ``ValueError`` if its fillet does not fit."""
     half = _half_space(teeth) if teeth.inner else _half_tooth(teeth)
-    pieces: list[Line | Arc | Spline] = []
+    pieces: list[Piece] = []
     turn = 2.0 * np.pi / teeth.count
-    far, near = (
-        (teeth.root_radius_mm, teeth.tip_radius_mm) if teeth.inner else (teeth.tip_radius_mm, teeth.root_radius_mm)
-    )
-    far_angle, near_angle = half.far_angle, half.near_angle
+    radii = teeth.tip_radius_mm, teeth.root_radius_mm
+    far, near = radii[::-1] if teeth.inner else radii
     for k in range(teeth.count):
         middle = teeth.phase_rad + k * turn
         pieces += [_placed(piece, middle, mirror=True) for piece in half.outward]
-        pieces.append(Arc(0.0, 0.0, far, middle - far_angle, middle + far_angle))
+        pieces.append(Arc(0.0, 0.0, far, middle - half.far_angle, middle + half.far_angle))
         pieces += [_placed(piece, middle, mirror=False) for piece in reversed(half.outward)]
-        pieces.append(Arc(0.0, 0.0, near, middle + near_angle, middle + turn - near_angle))
+        pieces.append(Arc(0.0, 0.0, near, middle + half.near_angle, middle + turn - half.near_angle))
     return Contour(pieces=tuple(pieces))
 
 
@@ -170,13 +161,13 @@ class _Half:
     ``far_angle`` and ``near_angle`` are where they meet the circles of largest and least radius.
     """
 
-    outward: Pieces
+    outward: tuple[Piece, ...]
     far_angle: float
     near_angle: float
 
 
 def _half_tooth(t: Teeth) -> _Half:
-    """Fillet, flank (with a radial line below the base circle), from the root outward; at positive angles."""
+    """Return fillet and flank (with a radial line below the base circle), from the root outward; at positive angles."""
     base, rho = t.base_radius_mm, t.fillet_mm
     centre_radius = t.root_radius_mm + rho
     roll = np.sqrt(max(centre_radius**2 - base**2, 0.0)) - rho
@@ -197,15 +188,12 @@ def _half_tooth(t: Teeth) -> _Half:
     if centre_angle > np.pi / t.count:
         raise ValueError(f"a fillet of {rho} mm does not fit between {t.count} teeth of module {t.module_mm}")
     fillet = _arc(_polar(centre_radius, centre_angle), _polar(t.root_radius_mm, centre_angle), touch)
-    return _Half(
-        outward=(fillet, *foot, _flank(t, start, t.tip_radius_mm)),
-        far_angle=t.half_angle(t.tip_radius_mm),
-        near_angle=centre_angle,
-    )
+    outward: tuple[Piece, ...] = (fillet, *foot, _flank(t, start, t.tip_radius_mm))
+    return _Half(outward=outward, far_angle=t.half_angle(t.tip_radius_mm), near_angle=centre_angle)
 
 
 def _half_space(t: Teeth) -> _Half:
-    """Flank and fillet of an internal gear's space, from the tips of its teeth outward; at positive angles."""
+    """Return flank and fillet of an internal gear's space, from the teeth's tips outward; at positive angles."""
     base, rho = t.base_radius_mm, t.fillet_mm
     centre_radius = t.root_radius_mm - rho
     touch_radius = float(np.hypot(base, np.sqrt(centre_radius**2 - base**2) + rho))
@@ -214,22 +202,19 @@ def _half_space(t: Teeth) -> _Half:
         raise ValueError(f"a fillet of {rho} mm does not fit into the spaces of {t.count} internal teeth")
     touch = _polar(touch_radius, t.half_angle(touch_radius))
     fillet = _arc(_polar(centre_radius, centre_angle), touch, _polar(t.root_radius_mm, centre_angle))
-    return _Half(
-        outward=(_flank(t, t.tip_radius_mm, touch_radius), fillet),
-        far_angle=centre_angle,
-        near_angle=t.half_angle(t.tip_radius_mm),
-    )
+    outward = (_flank(t, t.tip_radius_mm, touch_radius), fillet)
+    return _Half(outward=outward, far_angle=centre_angle, near_angle=t.half_angle(t.tip_radius_mm))
 
 
 def _flank(t: Teeth, start_mm: float, end_mm: float) -> Spline:
-    """Points of the involute, evenly spaced in roll angle, along which it is smoothest."""
+    """Return points of the involute, evenly spaced in roll angle, along which it is smoothest."""
     base = t.base_radius_mm
     rolls = np.linspace(np.sqrt(max(start_mm**2 - base**2, 0.0)), np.sqrt(end_mm**2 - base**2), _FLANK_POINTS)
     return Spline(np.array([_polar(r, t.half_angle(r)) for r in np.hypot(base, rolls)]))
 
 
-def _placed(piece: Line | Arc | Spline, angle: float, *, mirror: bool) -> Line | Arc | Spline:
-    """A piece of the upper half turned by ``angle``: run backwards, or mirrored to the lower half and run forwards."""
+def _placed(piece: Piece, angle: float, *, mirror: bool) -> Piece:
+    """Return a piece of the upper half turned by ``angle``: backwards, or mirrored to the lower half and forwards."""
     if isinstance(piece, Arc):
         centre = np.array([piece.x_mm, piece.y_mm], dtype=np.float64)
         x, y = _turned(centre * [1.0, -1.0] if mirror else centre, angle)
@@ -247,21 +232,19 @@ def _placed(piece: Line | Arc | Spline, angle: float, *, mirror: bool) -> Line |
     return Spline(points)
 
 
-def _turned(points: Point, angle: float) -> Point:
+def _turned(points: Points, angle: float) -> Points:
     cos, sin = np.cos(angle), np.sin(angle)
-    result: Point = points @ np.array([[cos, sin], [-sin, cos]])
-    return result
+    return np.asarray(points @ np.array([[cos, sin], [-sin, cos]]))
 
 
-def _arc(centre: Point, first: Point, last: Point) -> Arc:
-    """The short arc from one point to another."""
+def _arc(centre: Points, first: Points, last: Points) -> Arc:
     a = float(np.arctan2(first[1] - centre[1], first[0] - centre[0]))
     b = float(np.arctan2(last[1] - centre[1], last[0] - centre[0]))
     sweep = (b - a + np.pi) % (2.0 * np.pi) - np.pi
     return Arc(float(centre[0]), float(centre[1]), float(np.hypot(*(first - centre))), a, a + sweep)
 
 
-def _polar(radius: float, angle: float) -> Point:
+def _polar(radius: float, angle: float) -> Points:
     return np.array([radius * np.cos(angle), radius * np.sin(angle)])
 
 
@@ -274,11 +257,7 @@ def _angle(base_mm: float, radius_mm: float) -> float:
 
 
 def contours(shape: Shape) -> tuple[Contour, ...]:
-    """The closed curves that bound a shape, one per separate region.
-
-    Raises:
-        TypeError: a kind of shape that has no outline here.
-    """
+    """Return the closed curves that bound a shape, one per separate region; ``TypeError`` for an unknown kind."""
     if isinstance(shape, Circle):
         return (Contour(circle=shape),)
     if isinstance(shape, Pattern):
@@ -294,7 +273,7 @@ def contours(shape: Shape) -> tuple[Contour, ...]:
 
 
 def regions(outline: Shape, holes: Sequence[Shape]) -> list[tuple[Contour, list[Contour]]]:
-    """The separate regions of an outline, each with the holes that lie in it."""
+    """Return the separate regions of an outline, each with the holes that lie in it."""
     outer = contours(outline)
     inner = [contour for hole in holes for contour in contours(hole)]
     if len(outer) == 1:
@@ -308,7 +287,7 @@ def regions(outline: Shape, holes: Sequence[Shape]) -> list[tuple[Contour, list[
 
 
 def _contains(points: Points, point: Points) -> bool:
-    """Whether a polygon contains a point: a ray along x from there leaves it an odd number of times."""
+    """Return whether a polygon contains a point: a ray along x from there leaves it an odd number of times."""
     x, y = (points - point).T
     x_next, y_next = np.roll(x, -1), np.roll(y, -1)
     crosses = (y > 0.0) != (y_next > 0.0)
@@ -318,7 +297,7 @@ def _contains(points: Points, point: Points) -> bool:
 
 
 def all_polygons(shapes: Sequence[Shape], tolerance_mm: float = 0.01) -> list[Points]:
-    """One polygon per contour of the shapes."""
+    """Return one polygon per contour of the shapes."""
     return [polygon(contour, tolerance_mm) for shape in shapes for contour in contours(shape)]
 
 

@@ -11,13 +11,12 @@ from pareto_monoped.geometry.parts import Prism
 from pareto_monoped.geometry.shapes import Circle, Pattern, Shape
 
 _TOUCH_MM = 1e-9
-
 _LEAST_WALL_MM = 1.0
 """Of a ring that fills a hole. Our own choice: three times the chamfers of 0.3 mm on the edges of bores."""
 
 
 def regrouped(prisms: Sequence[Prism]) -> list[Prism]:
-    """The same body from other prisms: slices of one outline that stand on each other become one tall prism.
+    """Return the same body from other prisms: slices of one outline that stand on each other become one tall prism.
 
     Slices of a gear would have to be united along all their flanks. Where each slice has one central hole, the tall
     prism gets the widest of these holes, and rings fill it where the hole is narrower. Slices whose holes are nearly
@@ -44,13 +43,13 @@ def regrouped(prisms: Sequence[Prism]) -> list[Prism]:
 
 
 def stands_on(bevel: Bevel, prism: Prism) -> bool:
-    """Whether the edge of a bevel that takes away is one of this prism's, which is high enough for it."""
+    """Return whether the edge of a bevel that takes away is one of this prism's, which is high enough for it."""
     takes = bevel.hole or float(bevel.edge_mm) <= float(bevel.at.radius_mm)
     return takes and is_on(bevel, prism)
 
 
 def is_on(bevel: Bevel, prism: Prism) -> bool:
-    """The same of any bevel: that of a countersunk head adds to its shank."""
+    """Return the same of any bevel: that of a countersunk head adds to its shank."""
     face, end = float(bevel.face_mm), float(bevel.end_mm)
     low, high = float(prism.z0_mm), float(prism.z1_mm)
     shapes = prism.holes if bevel.hole else (prism.outline,)
@@ -59,7 +58,7 @@ def is_on(bevel: Bevel, prism: Prism) -> bool:
 
 
 def without_teeth(prism: Prism, bevels: Sequence[Bevel]) -> tuple[Prism, ...]:
-    """A prism with teeth and bevels as two, one around the other, of which one has the teeth and no bevel.
+    """Return a prism with teeth and bevels as two, one around the other, of which one has the teeth and no bevel.
 
     The kernel needs seconds for a cone on a face that has hundreds of edges. Other prisms come back as they are.
     """
@@ -85,7 +84,7 @@ def without_teeth(prism: Prism, bevels: Sequence[Bevel]) -> tuple[Prism, ...]:
 
 
 def _reach(shape: Shape) -> tuple[float, float]:
-    """Least and greatest distance of a shape's boundary from the origin; 0 and infinity for a kind not known here."""
+    """Return the least and the greatest distance of a boundary from the origin; 0 and infinity for unknown kinds."""
     if isinstance(shape, ExternalGear | InternalGear):
         radii = float(shape.root_radius_mm), float(shape.tip_radius_mm)
         return min(radii), max(radii)
@@ -98,7 +97,7 @@ def _reach(shape: Shape) -> tuple[float, float]:
 
 
 def _stacks(prisms: Sequence[Prism]) -> list[list[Prism]]:
-    """Prisms of one outline that stand on each other without a gap, from below; all others alone."""
+    """Return prisms of one outline that stand on each other without a gap, from below; all others alone."""
     stacks: list[list[Prism]] = []
     for prism in sorted(prisms, key=lambda p: float(p.z0_mm)):
         for stack in stacks:

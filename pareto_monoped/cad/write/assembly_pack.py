@@ -1,7 +1,4 @@
-"""The folder ``assembly/`` of an export: steps with pictures, torques, chain, purchasing list, printing, foot mould.
-
-A mould for the rubber foot: two printed halves around it, which hold the foot's block by its sides.
-"""
+"""The folder ``assembly/`` of an export: steps with pictures, torques, chain, purchasing list, printing, foot mould."""
 
 from collections.abc import Iterator, Sequence
 from html import escape
@@ -27,26 +24,38 @@ from pareto_monoped.geometry.roles import FASTENERS, JointKind, Role
 from pareto_monoped.geometry.shapes import Shape
 
 # Our own layout, mm.
-WALL_MM = 8.0
-"""Least thickness around the foot."""
-COLLAR_MM = 12.0
-"""How far the halves reach up beside the foot's block, which they hold in its place."""
-PLAY_MM = 0.15
-"""Around the block: what a printed hole is too small by."""
-PIN_DEPTH_MM = 8.0
-"""Depth in each half of the dowel pins 4 x 16 (ISO 2338) that align them."""
+WALL_MM = 8.0  #: Least thickness around the foot.
+COLLAR_MM = 12.0  #: How far the halves reach up beside the foot's block, which they hold in its place.
+PLAY_MM = 0.15  #: Around the block: what a printed hole is too small by.
+PIN_DEPTH_MM = 8.0  #: Depth in each half of the dowel pins 4 x 16 (ISO 2338) that align them.
 _PIN_HOLE = 4.2
-POUR_MM = 6.0
-"""Diameter of the holes for pouring and for the air, beside the block."""
+POUR_MM = 6.0  #: Diameter of the holes for pouring and for the air, beside the block.
 _SEGMENTS = 160  # of the ball: 0.013 mm from round at a radius of 33 mm
+FOLDER = "assembly"
+_FROM = {
+    "+y": "from the left",
+    "-y": "from the right",
+    "+x": "from the front",
+    "-x": "from the back",
+    "+z": "from above",
+    "-z": "from below",
+}
+_VERB = {JointKind.PRESSED: "Press", JointKind.BONDED: "Bond", JointKind.MOULDED: "Mould", JointKind.ENGAGED: "Lay"}
+_TAILS = "80 mm for the splice inside the motor's back and 60 mm for the terminals"
+_SLACK = 0.01
+"""Sideways play of the chain's slack strand over its free length: half of what chain makers allow for level drives,
+since the torque of a jump changes its sign. Our own choice."""
+_STYLE = """body{font:16px/1.45 sans-serif;margin:2em auto;max-width:1120px;padding:0 1em;color:#111}
+img{max-width:100%;border:1px solid #ddd}table{border-collapse:collapse;margin:1em 0}
+td,th{border:1px solid #bbb;padding:.25em .6em;text-align:left;vertical-align:top}
+section{break-inside:avoid;margin:1.5em 0}h2{margin-top:2em}"""
 
 
 def foot_mould(foot: Part, block: Part) -> tuple[Mesh, Mesh]:
-    """Both halves as they are printed: the plane that parts them upwards, z upwards, millimetres.
+    """Return both halves of a mould for the rubber foot, which hold the foot's block by its sides.
 
-    Args:
-        foot: a ball that is cut flat, with a pocket for the block's tongue.
-        block: what the foot is moulded onto; it stands on the foot's flat.
+    They lie as they are printed: the plane that parts them upwards, z upwards, millimetres. The foot is a ball that is
+    cut flat, with a pocket for the tongue of the block, which stands on the foot's flat.
     """
     (ball,) = foot.balls
     radius, top = float(ball.radius_mm), float(ball.top_mm)
@@ -73,14 +82,9 @@ def foot_mould(foot: Part, block: Part) -> tuple[Mesh, Mesh]:
     return mesh_from(front), mesh_from(back)
 
 
-def rubber_ml(foot: Part) -> float:
-    """Volume of the foot in millilitres."""
-    return 1e-3 * float(foot.volume_mm3())
-
-
 def _box(low: tuple[float, float, float], high: tuple[float, float, float]) -> m3.Manifold:
-    size = tuple(b - a for a, b in zip(low, high, strict=True))
-    return m3.Manifold.cube((size[0], size[1], size[2])).translate(low)
+    x, y, z = (b - a for a, b in zip(low, high, strict=True))
+    return m3.Manifold.cube((x, y, z)).translate(low)
 
 
 def _extent(outline: Shape) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -88,32 +92,8 @@ def _extent(outline: Shape) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return points.min(axis=0), points.max(axis=0)
 
 
-FOLDER = "assembly"
-_FROM = {
-    "+y": "from the left",
-    "-y": "from the right",
-    "+x": "from the front",
-    "-x": "from the back",
-    "+z": "from above",
-    "-z": "from below",
-}
-_VERB = {JointKind.PRESSED: "Press", JointKind.BONDED: "Bond", JointKind.MOULDED: "Mould", JointKind.ENGAGED: "Lay"}
-_TAILS = "80 mm for the splice inside the motor's back and 60 mm for the terminals"
-_SLACK = 0.01
-"""Sideways play of the chain's slack strand over its free length: half of what chain makers allow for level drives,
-since the torque of a jump changes its sign. Our own choice."""
-_STYLE = """body{font:16px/1.45 sans-serif;margin:2em auto;max-width:1120px;padding:0 1em;color:#111}
-img{max-width:100%;border:1px solid #ddd}table{border-collapse:collapse;margin:1em 0}
-td,th{border:1px solid #bbb;padding:.25em .6em;text-align:left;vertical-align:top}
-section{break-inside:avoid;margin:1.5em 0}h2{margin-top:2em}"""
-
-
 def assembly_pack(product: Listed) -> dict[str, bytes]:
-    """Content by path in the export's folder.
-
-    Raises:
-        CheckError: parts have no straight way into their place, or no key reaches a screw.
-    """
+    """Return content by path; ``CheckError`` if a part has no straight way in, or a screw no room for its key."""
     placed = instances(product.robot, POSE)
     blocking = blocking_of(placed)
     assembly = take_apart(blocking)
@@ -126,23 +106,15 @@ def assembly_pack(product: Listed) -> dict[str, bytes]:
     steps = steps_of(assembly)
     stage = stage_of(blocking, placed)
     made = {f"{FOLDER}/step_{step.number:02d}.png": png(step_picture(step, stage)) for step in steps}
-    foot, block = (_one(product, role) for role in (Role.FOOT, None))
-    halves = foot_mould(foot, block)
-    for name, half in zip(("front", "back"), halves, strict=True):
+    foot = next(unique.part for unique in product.unique if unique.part.role is Role.FOOT)
+    assert foot.joint is not None
+    block = next(unique.part for unique in product.unique if foot.joint.partner == unique.part.name)
+    for name, half in zip(("front", "back"), foot_mould(foot, block), strict=True):
         made[f"{FOLDER}/foot_mould_{name}.3mf"] = meshes.threemf(half, f"foot_mould_{name}")
     made[f"{FOLDER}/cables.csv"] = cables_csv(product).encode()
     made[f"{FOLDER}/hardware.csv"] = hardware(product).encode()
     made[f"{FOLDER}/index.html"] = "\n".join(_page(product, steps, blocking, placed, foot)).encode()
     return made
-
-
-def _one(product: Listed, role: Role | None) -> Part:
-    """The part with a role; without one, what the foot is moulded onto."""
-    foot = next(unique.part for unique in product.unique if unique.part.role is Role.FOOT)
-    if role is not None:
-        return foot
-    assert foot.joint is not None
-    return next(unique.part for unique in product.unique if foot.joint.partner == unique.part.name)
 
 
 def _name(blocking: Blocking, body: int) -> str:
@@ -203,8 +175,7 @@ def _addition(addition: Addition, blocking: Blocking) -> str:
 
 
 def _fastener(body: int, blocking: Blocking) -> str:
-    part, count = blocking.bodies[body].instance.part, len(blocking.bodies[body].instances)
-    name = f"{count} x {_name(blocking, body)}" if count > 1 else _name(blocking, body)
+    part, name = blocking.bodies[body].instance.part, _counted(body, blocking)
     if part.role not in FASTENERS:
         return f"Snap {escape(name)} into its groove: {escape(part.note)}."
     torque, lock = tightening(part)
@@ -212,11 +183,13 @@ def _fastener(body: int, blocking: Blocking) -> str:
 
 
 def _listed(members: Sequence[int], blocking: Blocking) -> str:
-    words = []
-    for k in members:
-        count = len(blocking.bodies[k].instances)
-        words.append(escape(f"{count} x {_name(blocking, k)}" if count > 1 else _name(blocking, k)))
+    words = [escape(_counted(k, blocking)) for k in members]
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def _counted(body: int, blocking: Blocking) -> str:
+    count = len(blocking.bodies[body].instances)
+    return f"{count} x {_name(blocking, body)}" if count > 1 else _name(blocking, body)
 
 
 def _screws(product: Listed) -> Iterator[tuple[str, ...]]:
@@ -229,7 +202,6 @@ def _screws(product: Listed) -> Iterator[tuple[str, ...]]:
 
 
 def _chain(product: Listed) -> Iterator[str]:
-    """How the chain is tensioned."""
     notes = [u.part.note for u in product.unique if u.part.role is Role.TURNBUCKLE]
     span_mm = 1000.0 * product.robot.design.thigh_length_m
     yield "<h2>Chain</h2><ol>"
@@ -247,7 +219,6 @@ def _chain(product: Listed) -> Iterator[str]:
 
 
 def _cables(product: Listed) -> Iterator[str]:
-    """What is cut, and where it runs."""
     made = cables(product.robot)
     yield "<h2>Cables</h2>"
     yield (
@@ -280,7 +251,7 @@ def _cables(product: Listed) -> Iterator[str]:
 
 
 def _printing(product: Listed, foot: Part) -> Iterator[str]:
-    """Settings of all printed parts, the mould among them, and how the foot is cast."""
+    """Yield the settings of all printed parts, the mould among them, and how the foot is cast."""
     yield "<h2>Printing</h2>"
     rows = [
         (u.name.replace("_", " "), str(u.count), u.part.material.name, u.part.note or "flat side down", "100 %")
@@ -295,7 +266,7 @@ def _printing(product: Listed, foot: Part) -> Iterator[str]:
         "<li>Sand and wax both halves of the mould, put 4 dowel pins 4 x 16 (ISO 2338) between them, set the foot "
         "block into the collar with its tongue downwards, and clamp the halves.</li>"
     )
-    mixed_ml = 1.1 * rubber_ml(foot)
+    mixed_ml = 1.1 * (1e-3 * float(foot.volume_mm3()))
     yield f"<li>Degrease and prime the tongue. Mix {mixed_ml:.0f} ml of polyurethane, {escape(foot.note)}.</li>"
     yield "<li>Pour through one hole until it stands in the other. Let it cure as its maker says.</li></ol>"
 

@@ -5,7 +5,6 @@ from typing import Any
 
 from pareto_monoped import __version__
 from pareto_monoped.actuator.actuator import Actuator
-from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.motors import motor_values
 from pareto_monoped.actuator.ratiomap import JointMaps
 from pareto_monoped.cad.as_built import Built
@@ -13,11 +12,8 @@ from pareto_monoped.definition.provenance import digest
 from pareto_monoped.design import Design
 from pareto_monoped.jump.calibration import Calibration, calibration_values
 
-_DIGITS = 12
-"""Of a design's hash: two of a million designs share one with a probability of 0.2 percent."""
-
-MADE_BY = f"pareto-monoped {__version__}"
-"""Program and version, as written into every record."""
+_DIGITS = 12  # of a design's hash: two of a million designs share one with a probability of 0.2 percent
+MADE_BY = f"pareto-monoped {__version__}"  #: Program and version, as written into every record.
 
 
 def design_record(
@@ -31,18 +27,7 @@ def design_record(
     formats: Sequence[str],
     strength: bool,
 ) -> dict[str, Any]:
-    """The content of ``design.json``, apart from the list of files.
-
-    Args:
-        searched: the design as the search found it.
-        built: the same as it was built.
-        maps: where its gearboxes come from.
-        jumps: by ``searched`` and ``as_built``: the results of both simulations.
-        calibration: the jump model of both.
-        source: where the design comes from.
-        formats: what was written.
-        strength: whether every joint had to have its required safety factor.
-    """
+    """Return the content of ``design.json``, apart from the list of files."""
     rules, values = maps.rules, [motor_values(motor) for motor in maps.motors]
     # Records with one motor hold it alone, as they did before there could be two.
     motor_data = values[0] if len(values) == 1 else dict(zip(("hip", "knee"), values, strict=True))
@@ -73,29 +58,23 @@ def design_record(
     }
 
 
-def _shifts(gears: GearSet) -> dict[str, float]:
-    """Profile shifts over the module, positive outwards; nothing where there are none, as in earlier records."""
-    if not gears.is_shifted:
-        return {}
-    return {
+def _actuator(actuator: Actuator) -> dict[str, Any]:
+    """Return gears and figures of an actuator; profile shifts (over the module) and rating only where it has them."""
+    gears, rating = actuator.gears, actuator.rating
+    shifts = {
         "sun_shift": float(gears.sun_shift),
         "planet_shift": float(gears.planet_shift),
         "ring_shift": float(gears.ring_shift),
         "centre_distance_mm": float(gears.carrier_radius_mm),
     }
-
-
-def _actuator(actuator: Actuator) -> dict[str, Any]:
-    """Gears and figures of an actuator, with the rating where its gears are rated."""
-    rating = actuator.rating
     return {
         "family": actuator.family,
-        "sun_teeth": int(actuator.gears.sun_teeth),
-        "planet_teeth": int(actuator.gears.planet_teeth),
-        "ring_teeth": int(actuator.gears.ring_teeth),
-        "module_mm": float(actuator.gears.module_mm),
-        "planets": int(actuator.gears.planets),
-        **_shifts(actuator.gears),
+        "sun_teeth": int(gears.sun_teeth),
+        "planet_teeth": int(gears.planet_teeth),
+        "ring_teeth": int(gears.ring_teeth),
+        "module_mm": float(gears.module_mm),
+        "planets": int(gears.planets),
+        **(shifts if gears.is_shifted else {}),
         "face_width_mm": actuator.face_width_mm,
         "ratio": actuator.ratio,
         "mass_kg": actuator.mass_kg,

@@ -1,10 +1,8 @@
 """DXF drawings of laser-cut plates: the true outline and holes, without kerf, on one layer, in millimetres.
 
-A second layer says in words what is done after cutting: countersinks, threads, reamed holes.
-
-A DXF file is a list of pairs, each a group code and a value on lines of their own (AutoCAD DXF reference, release 12).
-
-The folder ``test_stand/`` of an export: the arms that hang the base on two vertical rails.
+A second layer says in words what is done after cutting: countersinks, threads, reamed holes. A DXF file is a list of
+pairs, each a group code and a value on lines of their own (AutoCAD DXF reference, release 12). The folder
+``test_stand/`` of an export has the arms that hang the base on two vertical rails.
 """
 
 from collections.abc import Iterator
@@ -20,42 +18,23 @@ from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.stand import MGN12H, arm, carriage_places, carriage_screw, rod_screws
 
 LAYER = "CUT"
-NOTES = "NOTES"
-"""Layer of texts, which the laser must not engrave."""
+NOTES = "NOTES"  #: Layer of texts, which the laser must not engrave.
 _TEXT_MM = 2.5
-_CHARACTERS = ((TIMES, "x"), ("Ø", "%%c"), ("°", "%%d"))
-"""How R12 writes what is not ASCII."""
+_CHARACTERS = ((TIMES, "x"), ("Ø", "%%c"), ("°", "%%d"))  # how R12 writes what is not ASCII
 
-Pair = tuple[int, str]
-"""A group code and its value."""
+Pair = tuple[int, str]  #: A group code and its value.
 
-_HEAD: tuple[Pair, ...] = (
-    (0, "SECTION"),
-    (2, "HEADER"),
-    (9, "$ACADVER"),
-    (1, "AC1009"),  # release 12
-    (9, "$INSUNITS"),
-    (70, "4"),  # millimetres
-    (0, "ENDSEC"),
+
+def _layer(name: str, colour: int) -> tuple[Pair, ...]:
+    return (0, "LAYER"), (2, name), (70, "0"), (62, str(colour)), (6, "CONTINUOUS")  # 70: neither frozen nor locked
+
+
+_HEAD: tuple[Pair, ...] = (  # release 12, millimetres
+    *((0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"), (9, "$INSUNITS"), (70, "4"), (0, "ENDSEC")),
 )
-_LAYERS: tuple[Pair, ...] = (
-    (0, "SECTION"),
-    (2, "TABLES"),
-    (0, "TABLE"),
-    (2, "LAYER"),
-    (70, "2"),  # number of layers
-    (0, "LAYER"),
-    (2, LAYER),
-    (70, "0"),  # neither frozen nor locked
-    (62, "7"),  # black or white, whichever shows
-    (6, "CONTINUOUS"),
-    (0, "LAYER"),
-    (2, NOTES),
-    (70, "0"),
-    (62, "1"),  # red
-    (6, "CONTINUOUS"),
-    (0, "ENDTAB"),
-    (0, "ENDSEC"),
+_LAYERS: tuple[Pair, ...] = (  # two layers: black or white, whichever shows, and red
+    *((0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LAYER"), (70, "2")),
+    *(*_layer(LAYER, 7), *_layer(NOTES, 1), (0, "ENDTAB"), (0, "ENDSEC")),
 )
 _ENTITIES: tuple[Pair, ...] = ((0, "SECTION"), (2, "ENTITIES"))
 _END: tuple[Pair, ...] = ((0, "ENDSEC"), (0, "EOF"))
@@ -66,16 +45,12 @@ _RADIUS, _HEIGHT, _START_DEG, _END_DEG = 40, 40, 50, 51
 
 
 def is_flat(part: Part) -> bool:
-    """Whether a part is one plate that a laser can cut."""
+    """Return whether a part is one plate that a laser can cut."""
     return part.process == "laser cut" and len(part.prisms) == 1
 
 
 def dxf(part: Part) -> str:
-    """The text of a DXF file (R12, which every laser's software reads) of a flat part.
-
-    Raises:
-        ValueError: the part is not flat, or has curves that R12 cannot hold.
-    """
+    """Return a DXF file (R12, which every laser's software reads) of a flat part; ``ValueError`` for other parts."""
     if not is_flat(part):
         raise ValueError(f"{part.name}: not a flat part")
     (prism,) = part.prisms
@@ -86,7 +61,7 @@ def dxf(part: Part) -> str:
 
 
 def _notes(part: Part) -> Iterator[Pair]:
-    """A text beside the first of all equal holes that are worked on after cutting; the file shows z upwards."""
+    """Yield a text beside the first of all equal holes that are worked on after cutting; the file shows z upwards."""
     for bore in bores(part, on_axis=True):
         details = list(bore.details(from_above=True))
         threaded = bore.feature is not None and bore.feature.thread is not None
@@ -105,7 +80,6 @@ def _notes(part: Part) -> Iterator[Pair]:
 
 
 def _contour(name: str, contour: Contour) -> Iterator[Pair]:
-    """The entities of a closed curve of the part ``name``."""
     if contour.circle is not None:
         yield from _circle(contour.circle)
     for piece in contour.pieces:
@@ -152,11 +126,8 @@ def _number(value: float) -> str:
 
 
 def stand_files(d: LegDimensions) -> dict[str, str]:
-    """Content by path in the export's folder: the arm for the laser, and how it is used."""
-    return {
-        "test_stand/arm.dxf": dxf(arm(d)),
-        "test_stand/README.md": _readme(d),
-    }
+    """Return content by path in the export's folder: the arm for the laser, and how it is used."""
+    return {"test_stand/arm.dxf": dxf(arm(d)), "test_stand/README.md": _readme(d)}
 
 
 def _readme(d: LegDimensions) -> str:

@@ -25,18 +25,12 @@ from pareto_monoped.robot.population import RobotArrays
 
 
 def part_meshes(product: Product) -> dict[str, bytes]:
-    """The STL file of every unique part, by the part's name."""
+    """Return the STL file of every unique part, by the part's name."""
     return {unique.name: meshes.stl(unique.mesh) for unique in product.unique}
 
 
 def other_meshes(product: Product, shown: Sequence[Visual], formats: Collection[str]) -> dict[str, bytes]:
-    """All other files with triangles: content by path in the export's folder.
-
-    Args:
-        product: the parts.
-        shown: the visual meshes of the robot models, if there are to be any.
-        formats: of ``FORMATS``.
-    """
+    """Return content by path of all other files with triangles; ``shown`` are the models' visual meshes."""
     made: dict[str, bytes] = {}
     if "3mf" in formats:
         printed = [unique for unique in product.unique if unique.part.process == "3D printed"]
@@ -57,8 +51,10 @@ def write_meshes(
         write(folder, path, content)
 
 
-def write_drawings(folder: Path, product: Product, formats: Collection[str]) -> None:
-    """Write the laser drawings of the flat parts, and the arms of the test stand."""
+def write_drawings(folder: Path, product: Product, record: Mapping[str, Any], formats: Collection[str]) -> None:
+    """Write the drawing of the assembly, the laser drawings of the flat parts, and the arms of the test stand."""
+    if "pdf" in formats:
+        write(folder, "drawings/assembly.pdf", drawings.assembly_drawing(product, drawings.origin_of(record)))
     if "dxf" not in formats:
         return
     for unique in product.unique:
@@ -66,12 +62,6 @@ def write_drawings(folder: Path, product: Product, formats: Collection[str]) -> 
             write(folder, f"laser/{safe(unique.name)}.dxf", dxf.dxf(unique.part))
     for path, content in stand_files(product.robot.leg).items():
         write(folder, path, content)
-
-
-def write_assembly_sheet(folder: Path, product: Product, record: Mapping[str, Any], formats: Collection[str]) -> None:
-    """Write the drawing of the assembly."""
-    if "pdf" in formats:
-        write(folder, "drawings/assembly.pdf", drawings.assembly_drawing(product, drawings.origin_of(record)))
 
 
 def write_models(
@@ -83,10 +73,7 @@ def write_models(
     calibration: Calibration,
     formats: Collection[str],
 ) -> None:
-    """Write MJCF and URDF, which show the same meshes; no MJCF of a robot that cannot stand, as it has no jump.
-
-    Beside the MJCF stand all numbers that its jump needs, and a program that makes the jump with MuJoCo alone.
-    """
+    """Write URDF, MJCF and what its jump needs; no MJCF of a robot that cannot stand, as it has no jump."""
     if not {"mjcf", "urdf"} & set(formats):
         return
     solid = colliders(product)
@@ -100,7 +87,7 @@ def write_models(
 
 
 def pictures(product: Product) -> dict[str, Future[bytes]]:
-    """PNG files by name, which the kernel's process draws from now on."""
+    """Return PNG files by name, which the kernel's process draws from now on."""
     shown = {
         "assembly.png": scenes.assembly_scene(product),
         "exploded.png": scenes.exploded_scene(product),

@@ -1,10 +1,7 @@
 """The folder of an export: it is complete or absent, nothing is written outside it, and foreign files stay.
 
-A file is foreign unless the record of an earlier export lists it, under a name that an export writes.
-
-Interrupts while an export is written: its move into place is not broken off, its temporary folders are deleted.
-
-The formats that an export can write, and the files that each of them makes.
+A file is foreign unless the record of an earlier export lists it, under a name that an export writes. An interrupt does
+not break off the folder's move into place, and temporary folders are deleted.
 """
 
 import re
@@ -21,12 +18,59 @@ from pareto_monoped.config import read_json
 from pareto_monoped.errors import InputError, OutputError, complaint, unknown_name
 from pareto_monoped.files import FORCE, unwritable
 
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
-"""Ctrl-C, and what ends the worker processes of a batch."""
-_TRIES = 100
-"""To delete a folder: what a thread was writing when the folder got another name may come during the first."""
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)  # Ctrl-C, and what ends the worker processes of a batch
+_TRIES = 100  # to delete a folder: what a thread was writing when the folder got another name may come during the first
 _moving = threading.Lock()
 _unfinished: set[Path] = set()
+_SAFE_NAME = re.compile(r"[a-z0-9_]+")
+
+FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
+    "step": (
+        ("assembly.step", "the whole robot for any CAD program: named, coloured parts, mm"),
+        ("parts/step/", "each part for machining or changing"),
+    ),
+    "stl": (("parts/stl/", "each part as triangles, mm"),),
+    "3mf": (("print/", "the 3D-printed parts for the slicer, mm, lying as they are printed"),),
+    "dxf": (
+        (
+            "laser/",
+            "the plates for the laser cutter: true outline without kerf on the layer CUT, mm; NOTES says what follows",
+        ),
+        ("test_stand/", "two arms that hang the base on vertical rails, and how they are used, mm"),
+    ),
+    "glb": (("assembly.glb", "the robot to look at in a browser or viewer, m"),),
+    "mjcf": (
+        ("model/monoped.xml", "MuJoCo model that makes the simulated jump, with meshes and colliders, SI units"),
+        ("model/jump.json", "every number that the jump needs besides the model: motors, controller, losses, SI units"),
+        ("model/replay.py", "makes the jump again with MuJoCo and NumPy alone: `python model/replay.py`"),
+    ),
+    "urdf": (("model/monoped.urdf", "the same robot for other simulators, SI units"),),
+    "pdf": (
+        (
+            "drawings/assembly.pdf",
+            "the robot with sections and the list of items, its units pulled apart, with balloons, and its cables",
+        ),
+        ("drawings/", "a workshop drawing of each part that is made: dimensions, fits, tolerances, gear data"),
+    ),
+    "assembly": (
+        ("assembly/index.html", "how the robot is put together: steps, torques, chain, cables, printing, casting"),
+        ("assembly/hardware.csv", "what is bought: designations, standards, counts, lengths of cables"),
+        ("assembly/cables.csv", "where the cables run: every corner, bend radius, cut length, ties"),
+        ("assembly/", "the pictures of the steps, and the mould for the foot"),
+    ),
+    "png": (
+        ("assembly.png", "the robot in its start pose"),
+        ("exploded.png", "the robot pulled apart along the joints' axis"),
+        ("hip_actuator_section.png", "the hip actuator cut along its axis, with numbers and names of its parts"),
+        ("knee_actuator_section.png", "the knee actuator, likewise"),
+        ("knee_joint_section.png", "the knee joint, likewise"),
+    ),
+}
+"""Per format: path and purpose of each file, or of each folder of files (path with a slash at its end)."""
+RECORD = "design.json"  #: Name of the file that lists all files of an export; it is written last.
+ALWAYS = ("README.md", "bom.csv", "strength.csv", "parameters.csv", "monoped_equations.txt", "checks.json", RECORD)
+"""Files of every export."""
+FORMATS = tuple(FILES)  #: All formats, in the order in which they are listed; an export writes all of them by default.
 
 
 @contextmanager
@@ -84,76 +128,8 @@ def _delete(folder: Path) -> None:
                 break
 
 
-FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
-    "step": (
-        ("assembly.step", "the whole robot for any CAD program: named, coloured parts, mm"),
-        ("parts/step/", "each part for machining or changing"),
-    ),
-    "stl": (("parts/stl/", "each part as triangles, mm"),),
-    "3mf": (("print/", "the 3D-printed parts for the slicer, mm, lying as they are printed"),),
-    "dxf": (
-        (
-            "laser/",
-            "the plates for the laser cutter: true outline without kerf on the layer CUT, mm; NOTES says what follows",
-        ),
-        ("test_stand/", "two arms that hang the base on vertical rails, and how they are used, mm"),
-    ),
-    "glb": (("assembly.glb", "the robot to look at in a browser or viewer, m"),),
-    "mjcf": (
-        ("model/monoped.xml", "MuJoCo model that makes the simulated jump, with meshes and colliders, SI units"),
-        ("model/jump.json", "every number that the jump needs besides the model: motors, controller, losses, SI units"),
-        ("model/replay.py", "makes the jump again with MuJoCo and NumPy alone: `python model/replay.py`"),
-    ),
-    "urdf": (("model/monoped.urdf", "the same robot for other simulators, SI units"),),
-    "pdf": (
-        (
-            "drawings/assembly.pdf",
-            "the robot with sections and the list of items, its units pulled apart, with balloons, and its cables",
-        ),
-        ("drawings/", "a workshop drawing of each part that is made: dimensions, fits, tolerances, gear data"),
-    ),
-    "assembly": (
-        (
-            "assembly/index.html",
-            "how the robot is put together: steps, torques, chain, cables, printing, casting",
-        ),
-        ("assembly/hardware.csv", "what is bought: designations, standards, counts, lengths of cables"),
-        ("assembly/cables.csv", "where the cables run: every corner, bend radius, cut length, ties"),
-        ("assembly/", "the pictures of the steps, and the mould for the foot"),
-    ),
-    "png": (
-        ("assembly.png", "the robot in its start pose"),
-        ("exploded.png", "the robot pulled apart along the joints' axis"),
-        ("hip_actuator_section.png", "the hip actuator cut along its axis, with numbers and names of its parts"),
-        ("knee_actuator_section.png", "the knee actuator, likewise"),
-        ("knee_joint_section.png", "the knee joint, likewise"),
-    ),
-}
-"""Per format: path and purpose of each file, or of each folder of files (path with a slash at its end)."""
-
-RECORD = "design.json"
-"""Name of the file that lists all files of an export; it is written last."""
-ALWAYS = (
-    "README.md",
-    "bom.csv",
-    "strength.csv",
-    "parameters.csv",
-    "monoped_equations.txt",
-    "checks.json",
-    RECORD,
-)
-"""Files of every export."""
-
-FORMATS = tuple(FILES)
-"""All formats, in the order in which they are listed; an export writes all of them by default."""
-
-
 def chosen_formats(names: Sequence[str] | None) -> tuple[str, ...]:
-    """The formats asked for, in the order of ``FORMATS``; all of them for None.
-
-    Raises:
-        InputError: an unknown name.
-    """
+    """Return the formats asked for, in the order of ``FORMATS``, all for None; ``InputError`` for an unknown name."""
     if names is None:
         return FORMATS
     if isinstance(names, str) or not isinstance(names, Sequence):
@@ -162,9 +138,6 @@ def chosen_formats(names: Sequence[str] | None) -> tuple[str, ...]:
         if name not in FORMATS:
             raise InputError(unknown_name("format", name, FORMATS))
     return tuple(name for name in FORMATS if name in names)
-
-
-_SAFE_NAME = re.compile(r"[a-z0-9_]+")
 
 
 def require_free(out_dir: Path, *, force: bool) -> None:
@@ -189,11 +162,7 @@ def require_free(out_dir: Path, *, force: bool) -> None:
 
 
 def safe(name: str) -> str:
-    """A name that cannot lead out of the folder.
-
-    Raises:
-        OutputError: it could.
-    """
+    """Return a name that cannot lead out of the folder, or raise ``OutputError``."""
     if not _SAFE_NAME.fullmatch(name):
         raise OutputError(f"part name {name!r}: must be letters, digits and underscores to become a file; rename it")
     return name
@@ -209,13 +178,13 @@ def write(folder: Path, name: str, content: str | bytes) -> None:
 
 
 def files_in(folder: Path) -> list[str]:
-    """All files of a folder, as paths relative to it."""
+    """Return all files of a folder, as paths relative to it."""
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
 
 
 @contextmanager
 def beside(out_dir: Path) -> Iterator[Path]:
-    """A temporary folder beside the target; what is still in it when the block ends is deleted."""
+    """Make a temporary folder beside the target; what is still in it when the block ends is deleted."""
     # The name is noted before there is a folder, because an interrupt may come as soon as it has been made. With 64
     # random bits it is nobody else's.
     folder = out_dir.parent / f".{out_dir.name}-{secrets.token_hex(8)}"
@@ -282,7 +251,7 @@ def _require_own(out_dir: Path, names: Iterable[str], earlier: Collection[Path])
 
 
 def _earlier_files(out_dir: Path) -> list[Path]:
-    """Files that an earlier export wrote here, its record first."""
+    """Return the files that an earlier export wrote here, its record first."""
     try:
         names = [str(name) for name in read_json(out_dir / RECORD)["files"]]
     except (OSError, ValueError, KeyError, TypeError):
@@ -297,7 +266,7 @@ def _earlier_files(out_dir: Path) -> list[Path]:
 
 
 def _written_by_exports(name: str) -> bool:
-    """Whether an export writes a file of this name, or into its folder at least, of which not all files are listed."""
+    """Return whether an export writes a file of this name, or at least into its folder, whose files vary."""
     made = (*ALWAYS, *(path for files in FILES.values() for path, _ in files))
     first, *rest = Path(name).parts or ("",)
     folders = {path.partition("/")[0] for path in made if "/" in path}

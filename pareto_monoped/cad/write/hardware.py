@@ -1,7 +1,4 @@
-"""``hardware.csv``: what is bought, one row per designation with its standard and total count; and screws' torques.
-
-``cables.csv``: every corner of every cable in the assembly's frame, and what is cut how long.
-"""
+"""What is bought: ``hardware.csv``, one row per designation, the torques of screws, and ``cables.csv``."""
 
 import csv
 import io
@@ -16,6 +13,20 @@ from pareto_monoped.geometry.tightening import LOCKER
 
 _STANDARD = re.compile(r"(?:ISO|DIN)(?:/[A-Z]+)? \d+(?:-\d+)?")
 _COLUMNS = ("kind", "designation", "standard", "count", "used_for", "remark")
+_CABLE_COLUMNS = (
+    *(
+        "cable",
+        "from",
+        "to",
+        "wires",
+        "designation",
+        "diameter_mm",
+        "bend_radius_mm",
+        "least_bend_radius_mm",
+        "path_mm",
+    ),
+    *("cut_mm", "mass_not_counted_g", "corner", "x_mm", "y_mm", "z_mm", "what", "warning"),
+)
 _BOUGHT_ROUGH = frozenset({Role.SPROCKET})
 """Parts that are bought and then worked on, if their designation is that of a standard."""
 
@@ -33,7 +44,7 @@ class Item:
 
 
 def items(product: Listed) -> list[Item]:
-    """Everything that is bought, equal designations together, by kind and in the order of the assembly."""
+    """Return everything that is bought, equal designations together, by kind and in the order of the assembly."""
     found: dict[tuple[str, str], Item] = {}
     for unique in product.unique:
         part = unique.part
@@ -42,18 +53,9 @@ def items(product: Listed) -> list[Item]:
         designation, remark = _split(part)
         if part.process != "bought" and not _STANDARD.search(designation):
             continue  # cut from solid
-        key = (part.role.value, designation)
-        item = found.setdefault(
-            key,
-            Item(
-                kind=part.role.value,
-                designation=designation,
-                standard=", ".join(_STANDARD.findall(designation)),
-                count=0,
-                parts=[],
-                remarks=[],
-            ),
-        )
+        kind, standard = part.role.value, ", ".join(_STANDARD.findall(designation))
+        new = Item(kind=kind, designation=designation, standard=standard, count=0, parts=[], remarks=[])
+        item = found.setdefault((kind, designation), new)
         item.count += unique.count
         item.parts.append(unique.name)
         if remark and remark not in item.remarks:
@@ -62,7 +64,7 @@ def items(product: Listed) -> list[Item]:
 
 
 def by_designation(product: Listed) -> dict[str, list[Cable]]:
-    """The robot's cables, those of one kind together."""
+    """Return the robot's cables, those of one kind together."""
     found: dict[str, list[Cable]] = {}
     for cable in cables(product.robot):
         found.setdefault(cable.designation, []).append(cable)
@@ -70,7 +72,7 @@ def by_designation(product: Listed) -> dict[str, list[Cable]]:
 
 
 def hardware(product: Listed) -> str:
-    """The purchasing list as CSV."""
+    """Return the purchasing list as CSV."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(_COLUMNS)
@@ -90,13 +92,13 @@ def hardware(product: Listed) -> str:
 
 
 def tightening(part: Part) -> tuple[str, str]:
-    """Torque in N m and lock of a fastener, as written in tables."""
+    """Return torque in N m and lock of a fastener, as written in tables."""
     assert part.fastening is not None
     return f"{part.fastening.torque_n_m:.1f} N m", part.fastening.lock
 
 
 def _split(part: Part) -> tuple[str, str]:
-    """What to order, and what else the note of a part says: its first clause, with the sizes that belong to it."""
+    """Return what to order, the first clause of a part's note with the sizes that belong to it, and the rest."""
     head, _, rest = part.note.partition("; ")
     # A size such as "6804, 20 x 32 x 7 mm (ISO 15)" belongs to the designation.
     clauses = head.split(", ")
@@ -107,32 +109,11 @@ def _split(part: Part) -> tuple[str, str]:
     return designation, "; ".join(filter(None, (", ".join(clauses[take:]), rest)))
 
 
-_CABLES_COLUMNS = (
-    "cable",
-    "from",
-    "to",
-    "wires",
-    "designation",
-    "diameter_mm",
-    "bend_radius_mm",
-    "least_bend_radius_mm",
-    "path_mm",
-    "cut_mm",
-    "mass_not_counted_g",
-    "corner",
-    "x_mm",
-    "y_mm",
-    "z_mm",
-    "what",
-    "warning",
-)
-
-
 def cables_csv(product: Listed) -> str:
-    """The corners as CSV, with the thigh hanging down."""
+    """Return every corner of every cable in the assembly's frame as CSV, with the thigh hanging down."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(_CABLES_COLUMNS)
+    writer.writerow(_CABLE_COLUMNS)
     for cable in cables(product.robot):
         head = (cable.name, cable.start, cable.end, cable.wires, cable.designation, f"{cable.diameter_mm:g}")
         bends = (f"{cable.bend_radius_mm:.1f}", f"{cable.least_bend_radius_mm:.1f}")

@@ -1,6 +1,6 @@
-"""STL, 3MF and GLB from the meshes, as bytes: an export checks them (``check.watertight``) before it writes them.
+"""STL, 3MF and GLB from the meshes, as bytes, and what MJCF and URDF show of a robot and what collides.
 
-What MJCF and URDF show of a robot, and what collides: meshes per body and material, and primitives.
+An export checks the files (``check.watertight``) before it writes them.
 """
 
 import io
@@ -29,21 +29,26 @@ _RELATIONS = (
     '<Relationship Target="/3D/3dmodel.model" Id="rel0" '
     'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
 )
+_STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("extra", "<u2")])
+Floats = NDArray[np.float64]
+VISUAL_TOLERANCE_MM = 0.1
+METRES = 1e-3  #: From the meshes' millimetres to the models' unit.
+_MARGIN_M = 1e-3
 
 
 def stl(mesh: Mesh, *, scale: float = 1.0) -> bytes:
-    """A binary STL file; in millimetres, or in metres with ``scale`` 0.001."""
+    """Return a binary STL file; in millimetres, or in metres with ``scale`` 0.001."""
     corners = (mesh.points_mm * scale)[mesh.triangles].astype("<f4")
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normal, axis=1, keepdims=True)
-    rows = np.zeros(len(corners), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("extra", "<u2")])
+    rows = np.zeros(len(corners), dtype=_STL)
     rows["normal"] = normal / np.where(length > 0.0, length, 1.0)
     rows["corners"] = corners
     return b"\0" * 80 + np.uint32(len(rows)).tobytes() + rows.tobytes()
 
 
 def threemf(mesh: Mesh, name: str) -> bytes:
-    """A 3MF file (3MF core specification 1.3) of one object, in millimetres, lying on the plate."""
+    """Return a 3MF file (3MF core specification 1.3) of one object, in millimetres, lying on the plate."""
     points = mesh.points_mm - np.array([0.0, 0.0, mesh.points_mm[:, 2].min()])
     vertices = "".join(f'<vertex x="{x:.6g}" y="{y:.6g}" z="{z:.6g}"/>' for x, y, z in points.tolist())
     triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in mesh.triangles.tolist())
@@ -54,13 +59,10 @@ def threemf(mesh: Mesh, name: str) -> bytes:
         f"<triangles>{triangles}</triangles></mesh></object></resources>"
         '<build><item objectid="1"/></build></model>'
     )
+    files = {"[Content_Types].xml": _CONTENT_TYPES, "_rels/.rels": _RELATIONS, "3D/3dmodel.model": model}
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
-        for path, text in (
-            ("[Content_Types].xml", _CONTENT_TYPES),
-            ("_rels/.rels", _RELATIONS),
-            ("3D/3dmodel.model", model),
-        ):
+        for path, text in files.items():
             entry = zipfile.ZipInfo(path, _EARLIEST)
             entry.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(entry, text)
@@ -68,7 +70,7 @@ def threemf(mesh: Mesh, name: str) -> bytes:
 
 
 def glb(product: Product) -> bytes:
-    """The assembly as binary glTF 2.0: metres, y up, the front towards +z, each unique part's triangles stored once."""
+    """Return the assembly as binary glTF 2.0: metres, y up, front towards +z, each part's triangles stored once."""
     import trimesh  # here, because it takes longer to import than all other files to write
 
     scene = trimesh.Scene(base_frame="world")
@@ -85,23 +87,11 @@ def glb(product: Product) -> bytes:
         mesh.visual = trimesh.visual.TextureVisuals(material=material)
         scene.geometry[kind.name] = mesh
     for instance, kind in product.placed():
-        scene.graph.update(
-            frame_from="world",
-            frame_to=instance.name,
-            matrix=upright @ metres @ instance.world,
-            geometry=kind.name,
-        )
+        matrix = upright @ metres @ instance.world
+        scene.graph.update(frame_from="world", frame_to=instance.name, matrix=matrix, geometry=kind.name)
     data = scene.export(file_type="glb")
     assert isinstance(data, bytes)
     return data
-
-
-Floats = NDArray[np.float64]
-
-VISUAL_TOLERANCE_MM = 0.1
-METRES = 1e-3
-"""From the meshes' millimetres to the models' unit."""
-_MARGIN_M = 1e-3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,7 +116,7 @@ class Collider:
 
 
 def visuals(product: Product) -> tuple[Visual, ...]:
-    """Coarse meshes of what can be seen, one for each body and material, at zero joint angles."""
+    """Return coarse meshes of what can be seen, one per body and material, at zero joint angles."""
     shown: dict[tuple[str, str], list[tuple[Mesh, Floats]]] = {}
     colours: dict[tuple[str, str], tuple[float, float, float]] = {}
     for instance, unique in product.placed():
@@ -136,18 +126,13 @@ def visuals(product: Product) -> tuple[Visual, ...]:
         shown.setdefault(key, []).append((mesh_of(unique.part, VISUAL_TOLERANCE_MM), instance.in_body))
         colours.setdefault(key, unique.part.material.colour)
     return tuple(
-        Visual(
-            name=f"{body}_{material}",
-            body=body,
-            mesh=joined(members, METRES),
-            colour=colours[body, material],
-        )
+        Visual(name=f"{body}_{material}", body=body, mesh=joined(members, METRES), colour=colours[body, material])
         for (body, material), members in shown.items()
     )
 
 
 def colliders(product: Product) -> tuple[Collider, ...]:
-    """Boxes and cylinders around frame, actuators and links; the foot's sphere is the simulation's own."""
+    """Return boxes and cylinders around frame, actuators and links; the foot's sphere is the simulation's own."""
     robot = product.robot
     # Rods, with the screws that stand out of the cheeks, bound the frame; cores bound the links.
     return (
@@ -160,7 +145,6 @@ def colliders(product: Product) -> tuple[Collider, ...]:
 
 
 def _around_actuator(product: Product, name: str, actuator: Actuator) -> Collider:
-    """A cylinder as long and wide as an actuator's housing."""
     unit = next(unit for unit in product.robot.units if unit.name == name)
     middle = unit_frame(unit) @ np.array([0.0, 0.0, -0.5 * actuator.length_mm, 1.0])
     return Collider(
@@ -173,7 +157,7 @@ def _around_actuator(product: Product, name: str, actuator: Actuator) -> Collide
 
 
 def _around_parts(product: Product, name: str, *, unit: str, roles: tuple[Role, ...]) -> Collider:
-    """A box with a margin around those parts of a unit that can be seen and have one of the roles."""
+    """Return a box with a margin around those parts of a unit that can be seen and have one of the roles."""
     bodies = set()
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for instance, unique in product.placed():
@@ -183,16 +167,10 @@ def _around_parts(product: Product, name: str, *, unit: str, roles: tuple[Role, 
             box = np.asarray(placed(unique.mesh.body, instance.in_body).bounding_box())
             low, high = np.minimum(low, box[:3]), np.maximum(high, box[3:])
     (body,) = bodies
-    half, centre = 0.5e-3 * (high - low) + _MARGIN_M, 0.5e-3 * (high + low)
-    return Collider(
-        name=name,
-        body=body,
-        shape="box",
-        size=tuple(float(v) for v in half),
-        position=(float(centre[0]), float(centre[1]), float(centre[2])),
-    )
+    half, centre = (tuple(float(v) for v in row) for row in (0.5e-3 * (high - low) + _MARGIN_M, 0.5e-3 * (high + low)))
+    return Collider(name=name, body=body, shape="box", size=half, position=(centre[0], centre[1], centre[2]))
 
 
 def numbers(*values: float) -> str:
-    """Values as an XML attribute, each with all its digits."""
+    """Return values as an XML attribute, each with all its digits."""
     return " ".join(repr(float(value)) for value in values)

@@ -1,7 +1,4 @@
-"""MJCF: the simulated model with visual meshes and colliders added.
-
-``model/jump.json`` and ``model/replay.py``: what the jump needs besides the MJCF, and a program that makes it.
-"""
+"""MJCF: the simulated model with visual meshes and colliders, what else its jump needs, and a program that makes it."""
 
 import json
 import xml.etree.ElementTree as ET
@@ -17,17 +14,28 @@ from pareto_monoped.jump.evaluate import evaluate_robots
 from pareto_monoped.jump.population import first_records
 from pareto_monoped.robot.population import RobotArrays
 
+_NUMBERS = (
+    *CONTROL[:-1],
+    *("timestep_s", "step_limit", "period_steps", "read_back_s", "delay_periods", "fade_length_m", "latch", "lags"),
+    *("mean_speed", "voltage_limit", "loss_speed_rad_per_s", "regeneration_share", "thigh_length_m", "shank_length_m"),
+    *("foot_radius_m", "weight_n", "torque_limit_n_m", "no_load_speed_rad_per_s", "corner_speed_rad_per_s", "loss"),
+    *(
+        "heat_w_per_n2_m2",
+        "lower_stop_rad",
+        "flight_stiffness_n_m_per_rad",
+        "flight_damping_n_m_s_per_rad",
+        "start_rad",
+    ),
+)
+"""Fields of the controller's record that the replay reads; the start height stands in the MJCF's keyframe."""
+_EXPECTED = ("height_m", "energy_j", "electrical_energy_j")
+
 
 def mjcf_with_meshes(document: str, shown: Sequence[Visual], solid: Sequence[Collider]) -> str:
-    """The simulation's MJCF with visual meshes (group 2) and colliders (group 3) added.
+    """Return the simulation's MJCF with visual meshes ``meshes/NAME.stl`` (group 2) and colliders (group 3) added.
 
     The colliders meet each other but not the floor (contype and conaffinity 2). The document therefore still makes the
     very jump that was simulated, in which only the foot touches the ground.
-
-    Args:
-        document: the MJCF that the simulation compiles.
-        shown: meshes, each in a file ``meshes/NAME.stl`` beside the document, in metres.
-        solid: primitives.
     """
     root = ET.fromstring(document, parser=ET.XMLParser(target=ET.TreeBuilder(insert_comments=True)))
     compiler = root.find("compiler")
@@ -49,76 +57,20 @@ def mjcf_with_meshes(document: str, shown: Sequence[Visual], solid: Sequence[Col
 
 
 def _add_visual(body: ET.Element, visual: Visual) -> None:
-    ET.SubElement(
-        body,
-        "geom",
-        name=f"{visual.name}_visual",
-        type="mesh",
-        mesh=visual.name,
-        contype="0",
-        conaffinity="0",
-        group="2",
-        rgba=numbers(*visual.colour, 1.0),
-    )
+    shown = {"name": f"{visual.name}_visual", "type": "mesh", "mesh": visual.name, "contype": "0", "conaffinity": "0"}
+    ET.SubElement(body, "geom", shown, group="2", rgba=numbers(*visual.colour, 1.0))
 
 
 def _add_collider(body: ET.Element, collider: Collider) -> None:
-    geom = ET.SubElement(
-        body,
-        "geom",
-        name=f"{collider.name}_collider",
-        type=collider.shape,
-        size=numbers(*collider.size),
-        pos=numbers(*collider.position),
-        contype="2",
-        conaffinity="2",
-        group="3",
-        rgba="0.2 0.5 0.9 0.2",
-    )
+    shape = {"name": f"{collider.name}_collider", "type": collider.shape, "size": numbers(*collider.size)}
+    shape |= {"pos": numbers(*collider.position), "contype": "2", "conaffinity": "2"}
+    geom = ET.SubElement(body, "geom", shape, group="3", rgba="0.2 0.5 0.9 0.2")
     if collider.shape == "cylinder":
         geom.set("zaxis", "0 1 0")
 
 
-_NUMBERS = (
-    *CONTROL[:-1],
-    "timestep_s",
-    "step_limit",
-    "period_steps",
-    "read_back_s",
-    "delay_periods",
-    "fade_length_m",
-    "latch",
-    "lags",
-    "mean_speed",
-    "voltage_limit",
-    "loss_speed_rad_per_s",
-    "regeneration_share",
-    "thigh_length_m",
-    "shank_length_m",
-    "foot_radius_m",
-    "weight_n",
-    "torque_limit_n_m",
-    "no_load_speed_rad_per_s",
-    "corner_speed_rad_per_s",
-    "loss",
-    "heat_w_per_n2_m2",
-    "lower_stop_rad",
-    "flight_stiffness_n_m_per_rad",
-    "flight_damping_n_m_s_per_rad",
-    "start_rad",
-)
-"""Fields of the controller's record that the replay reads; the start height stands in the MJCF's keyframe."""
-_EXPECTED = ("height_m", "energy_j", "electrical_energy_j")
-
-
 def jump_record(arrays: RobotArrays, design: Design, calibration: Calibration) -> str:
-    """The content of ``jump.json``.
-
-    Args:
-        arrays: the robot as it is simulated, one row.
-        design: as it is built.
-        calibration: the jump model.
-    """
+    """Return the content of ``jump.json``."""
     from pareto_monoped.jump.controller import TOUCH_M
 
     control = columns(design.as_array()[None], CONTROL)
@@ -130,10 +82,10 @@ def jump_record(arrays: RobotArrays, design: Design, calibration: Calibration) -
 
 
 def _finite(value: np.ndarray) -> object:
-    """Plain numbers; an infinite one, such as the stop of a joint without any, becomes one that no joint reaches."""
+    """Return plain numbers; an infinite one, such as the stop of a joint without any, becomes one out of reach."""
     return np.nan_to_num(np.asarray(value, dtype=np.float64), posinf=1e9, neginf=-1e9, nan=-1.0).tolist()
 
 
 def replay_script() -> str:
-    """The text of ``replay.py``, which needs MuJoCo and NumPy only."""
+    """Return the text of ``replay.py``, which needs MuJoCo and NumPy only."""
     return (resources.files("pareto_monoped") / "data" / "replay.py").read_text(encoding="utf-8")

@@ -7,9 +7,8 @@ for a file name other than ``equations.txt``). Many other CAD programs read such
 
 import csv
 import io
-import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,7 +20,36 @@ from pareto_monoped.leg.dimensions import LegDimensions
 
 _COLUMNS = ("name", "value", "unit", "part", "meaning")
 _DIGITS = 6  # decimals: a nanometre
-_ATTRIBUTE = re.compile(r"^        ((?:\w+, )*\w+): (.*(?:\n {12}.*)*)", re.MULTILINE)
+_LEG = {
+    "bearing_bore_radius": (_BEARING := "of the bearings of knee and base."),
+    "bearing_outer_radius": _BEARING,
+    "bearing_width": _BEARING,
+    "thigh_window_half_width": (_THIGH := "the bar of the thigh's plates."),
+    "plate": "thickness of the aluminium plates of the thigh.",
+    "shank_plate": "thickness of the aluminium plates of the shank.",
+    "gap": "distance between the thigh's plates: both knee bearings and the sprocket between them fit in.",
+    "play": "lateral distance between thigh and shank, for the spacers on the knee's axle.",
+    "hip_play": "lateral distance between thigh and base, so that M3 x 16 screws join the thigh to the hip's output.",
+    "thigh_half_width": _THIGH,
+    "thigh_core_half_width": (
+        _CORE := "the thigh's printed core, which is at least 3.4 mm inside the strands of the chain."
+    ),
+    "thigh_core_window_half_width": _CORE,
+    "knee_radius": "of the thigh plates at the knee; covers the chain, which reaches out to 34.1 mm.",
+    "shank_top_radius": (_SHANK := "the shank's plates."),
+    "shank_bottom_radius": _SHANK,
+    "shank_window_half_width": _SHANK,
+    "shank_core_half_width": (_SHANK_CORE := "the shank's printed core."),
+    "shank_core_window_half_width": _SHANK_CORE,
+    "fork": (
+        "free depth of the shank's fork below the knee axis, enough for the thigh at the end of ``stops.knee_stop``."
+    ),
+    "foot_radius": "of the rubber ball.",
+    "rod_radius": "of the base's rods: a common tube, with 3.35 mm of wall around its M4 thread.",
+    "cheek": "thickness of the base's near cheek.",
+    "far_cheek": "thickness of the base's far cheek: the bearing's seat and a lip of 1 mm.",
+}
+"""What the lengths of ``LegDimensions`` are, by their names without the unit, in the order of the files."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,16 +70,9 @@ class Parameter:
 
 
 def parameters(product: Product, leg: LegDimensions) -> tuple[Parameter, ...]:
-    """All dimensions of a robot: of the design, of its leg, and of every part that is made, in the part's own frame.
-
-    Args:
-        product: the robot's parts.
-        leg: the dimensions that its links were made with.
-
-    Raises:
-        ValueError: two dimensions have one name.
-    """
-    found = (*_of_design(product), *_of_leg(leg), *(p for unique in product.unique for p in _of_part(unique)))
+    """Return all dimensions of a design, its leg and every part that is made; ``ValueError`` if two have one name."""
+    of_leg = (_length("", f"leg_{name}", getattr(leg, f"{name}_mm"), meaning) for name, meaning in _LEG.items())
+    found = (*_of_design(product), *of_leg, *(p for unique in product.unique for p in _of_part(unique)))
     names = [parameter.name for parameter in found]
     if len(set(names)) < len(names):
         twice = next(name for k, name in enumerate(names) if name in names[:k])
@@ -60,7 +81,7 @@ def parameters(product: Product, leg: LegDimensions) -> tuple[Parameter, ...]:
 
 
 def parameters_csv(rows: Iterable[Parameter]) -> str:
-    """The text of ``parameters.csv``."""
+    """Return the text of ``parameters.csv``."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(_COLUMNS)
@@ -69,12 +90,11 @@ def parameters_csv(rows: Iterable[Parameter]) -> str:
 
 
 def equations(rows: Iterable[Parameter]) -> str:
-    """The text of the equations file: a line such as ``"thigh_length" = 320mm`` per dimension."""
+    """Return the text of the equations file: a line such as ``"thigh_length" = 320mm`` per dimension."""
     return "".join(f'"{row.name}" = {row.text}{row.unit}\n' for row in rows)
 
 
 def _of_design(product: Product) -> Iterator[Parameter]:
-    """Lengths of the links, and the gear sets."""
     robot = product.robot
     for link, length_m in (("thigh", robot.design.thigh_length_m), ("shank", robot.design.shank_length_m)):
         yield _length("", f"{link}_length", 1e3 * length_m, f"{link}: between its joints, or knee and foot centre")
@@ -84,26 +104,8 @@ def _of_design(product: Product) -> Iterator[Parameter]:
         yield _length(unit, f"{joint}_face_width", actuator.face_width_mm, f"face width of the {joint}'s gears")
 
 
-def _of_leg(leg: LegDimensions) -> Iterator[Parameter]:
-    """Every number of the leg's dimensions that is a length or a count, with the meaning that the record gives it."""
-    meanings = {
-        name: " ".join(text.split())
-        for names, text in _ATTRIBUTE.findall(LegDimensions.__doc__ or "")
-        for name in names.split(", ")
-    }
-    for field in fields(leg):
-        value = getattr(leg, field.name)
-        if not isinstance(value, int | float):
-            continue
-        meaning = meanings.get(field.name, field.name.replace("_", " "))
-        if field.name.endswith("_mm"):
-            yield _length("", f"leg_{field.name.removesuffix('_mm')}", value, meaning)
-        elif field.name.endswith("_holes"):
-            yield _number("", f"leg_{field.name}", value, meaning)
-
-
 def _of_part(unique: UniquePart) -> Iterator[Parameter]:
-    """Heights, outlines, holes and cones of a part that is made."""
+    """Yield heights, outlines, holes and cones of a part that is made."""
     part, name = unique.part, unique.name
     if part.process == "bought":
         return

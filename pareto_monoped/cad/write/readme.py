@@ -26,29 +26,13 @@ def readme(
     factors: Sequence[JointFactor] = (),
     life: GearLife | None = None,
 ) -> str:
-    """The page as Markdown.
-
-    Args:
-        record: the content of ``design.json``, see ``design_record``.
-        product: the parts.
-        checks: all checks that were run.
-        formats: what was written.
-        factors: safety factors of all joints; none if the design does not jump.
-        life: of the gears under strikes, where it is known.
-    """
-    lines = [
-        *_design(record),
-        *_actuators(record),
-        *_files(formats),
-        *_making(product),
-        *_strength(record, factors, life),
-        *_checks(checks),
-    ]
+    """Return the page as Markdown; ``factors`` is empty if the design does not jump."""
+    blocks = (_design(record), _actuators(record), _files(formats), _making(product))
+    lines = [line for block in (*blocks, _strength(record, factors, life), _checks(checks)) for line in block]
     return "\n".join(lines) + "\n"
 
 
 def _design(record: Mapping[str, Any]) -> Iterator[str]:
-    """Variables and jumps, as searched and as built."""
     yield from ("# Monoped", "")
     yield from (f"Made by {record['made_by']} with motor {record['motor']}; {record['mass_kg']:.2f} kg.", "")
     yield from ("| variable | searched | as built |", "|---|---|---|")
@@ -109,7 +93,7 @@ def _files(formats: Sequence[str]) -> Iterator[str]:
 
 
 def _making(product: Product) -> Iterator[str]:
-    """Per process: how it is done, and the parts that it makes; then what the cables lack room for."""
+    """Yield per process how it is done and the parts that it makes, then what the cables lack room for."""
     yield from ("## Making the parts", "")
     for process, how in _HOW.items():
         names = [_counted(unique) for unique in product.unique if unique.part.process == process]
@@ -121,7 +105,6 @@ def _making(product: Product) -> Iterator[str]:
 
 
 def _strength(record: Mapping[str, Any], factors: Sequence[JointFactor], life: GearLife | None) -> Iterator[str]:
-    """The factors, and whether anybody asked for them."""
     yield from ("## Strength", "")
     if not record["strength"]:
         yield from ("Strength was not asked for: this design may not hold.", "")

@@ -1,9 +1,4 @@
-"""``bom.csv``: the parts list.
-
-``strength.csv``: the safety factor of every joint under the loads of the jump.
-
-``checks.json``: what was checked, and what was found.
-"""
+"""Tables of an export: ``bom.csv`` with the parts, ``strength.csv`` with all safety factors, and ``checks.json``."""
 
 import csv
 import io
@@ -11,40 +6,30 @@ import json
 from collections import defaultdict
 from collections.abc import Sequence
 
+import numpy as np
+
 from pareto_monoped.cad.check.result import Check
-from pareto_monoped.cad.product import ACTUATOR_UNITS, Product, extent_mm, part_file_name
+from pareto_monoped.cad.product import ACTUATOR_UNITS, Product, part_file_name
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.strength.factors import JointFactor
 from pareto_monoped.strength.joint import ActuatorJoint
 
-_COLUMNS = (
-    "part",
-    "count",
-    "material",
-    "process",
-    "mass_g",
-    "total_g",
-    "made_or_bought",
-    "size_mm",
-    "used_in",
-    "torque_n_m",
-    "lock",
-    "safety_factors",
-    "note",
+_PART_COLUMNS = (
+    *("part", "count", "material", "process", "mass_g", "total_g", "made_or_bought", "size_mm", "used_in"),
+    *("torque_n_m", "lock", "safety_factors", "note"),
+)
+_JOINT_COLUMNS = (
+    *("joint", "group", "actuator", "factor", "required", "factor_over_required", "asked", "loads", "formula"),
+    *("source", "required_because", "parts", "cure"),
 )
 
 
 def parts_list(product: Product, factors: Sequence[JointFactor] = ()) -> str:
-    """The parts list as CSV, one row per unique part.
-
-    Args:
-        product: the parts.
-        factors: safety factors of the joints; each stands with the parts that it is about.
-    """
+    """Return the parts list as CSV, one row per unique part, with the safety factors of the joints that it is in."""
     joints = _by_part(factors)
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(_COLUMNS)
+    writer.writerow(_PART_COLUMNS)
     for unique in product.unique:
         part = unique.part
         mass_g = 1e3 * float(part.unit_mass_kg())
@@ -57,7 +42,7 @@ def parts_list(product: Product, factors: Sequence[JointFactor] = ()) -> str:
                 f"{mass_g:.2f}",
                 f"{mass_g * unique.count:.2f}",
                 "bought" if part.process == "bought" else "made",
-                " x ".join(f"{size:.1f}" for size in extent_mm(unique.mesh)),
+                " x ".join(f"{size:.1f}" for size in np.ptp(unique.mesh.points_mm, axis=0)),
                 " ".join(unique.units),
                 f"{part.fastening.torque_n_m:.1f}" if part.fastening else "",
                 part.fastening.lock if part.fastening else "",
@@ -69,7 +54,7 @@ def parts_list(product: Product, factors: Sequence[JointFactor] = ()) -> str:
 
 
 def _by_part(factors: Sequence[JointFactor]) -> dict[str, list[str]]:
-    """File name of a part -> its joints, each with factor and required factor."""
+    """Return the joints of each part, by its file name, each with factor and required factor."""
     found: dict[str, list[str]] = defaultdict(list)
     for one in factors:
         required = "informs" if one.joint.informs else f"{one.joint.required:g}"
@@ -84,44 +69,24 @@ def _by_part(factors: Sequence[JointFactor]) -> dict[str, list[str]]:
 
 
 def _note(part: Part) -> str:
-    """What the maker must know: grade and accuracy, fits, note, joint."""
-    return "; ".join(
-        filter(
-            None,
-            (
-                f"{part.grade.name}, {part.grade.hardness}" if part.grade else "",
-                f"ISO 1328-1 class {part.accuracy_class}" if part.accuracy_class else "",
-                *(one.text for one in part.teeth),
-                *(fit.text for fit in part.fits),
-                part.note,
-                part.joint.text if part.joint else "",
-            ),
-        )
+    """Return what the maker must know: grade and accuracy, fits, note, joint."""
+    grade, accuracy = part.grade, part.accuracy_class
+    words = (
+        f"{grade.name}, {grade.hardness}" if grade else "",
+        f"ISO 1328-1 class {accuracy}" if accuracy else "",
+        *(one.text for one in part.teeth),
+        *(fit.text for fit in part.fits),
+        part.note,
+        part.joint.text if part.joint else "",
     )
-
-
-_STRENGTH_TABLE_COLUMNS = (
-    "joint",
-    "group",
-    "actuator",
-    "factor",
-    "required",
-    "factor_over_required",
-    "asked",
-    "loads",
-    "formula",
-    "source",
-    "required_because",
-    "parts",
-    "cure",
-)
+    return "; ".join(filter(None, words))
 
 
 def strength_table(factors: Sequence[JointFactor]) -> str:
-    """The table as CSV, a row per joint; without rows if the design does not jump."""
+    """Return the table as CSV, a row per joint; without rows if the design does not jump."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(_STRENGTH_TABLE_COLUMNS)
+    writer.writerow(_JOINT_COLUMNS)
     for one in factors:
         joint = one.joint
         writer.writerow(
@@ -145,7 +110,7 @@ def strength_table(factors: Sequence[JointFactor]) -> str:
 
 
 def checks_record(checks: Sequence[Check]) -> str:
-    """The checks as JSON, in the order in which they ran."""
+    """Return the checks as JSON, in the order in which they ran."""
     rows = [
         {
             "check": check.name,

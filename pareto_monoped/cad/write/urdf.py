@@ -15,16 +15,11 @@ _NO_TURN = "0 0 0"
 
 
 def urdf(arrays: RobotArrays, joints: Joints, shown: Sequence[Visual], solid: Sequence[Collider]) -> str:
-    """The URDF of the first robot: links ``base``, ``thigh``, ``shank``, joints ``hip`` and ``knee``, frame ``foot``.
+    """Return the URDF of the first robot: links base, thigh and shank, joints hip and knee, frame foot.
 
     URDF has no element for the inertia of rotors, nor for its coupling with the thigh's rotation, so each joint has a
-    comment with them.
-
-    Args:
-        arrays: the robot as it is simulated.
-        joints: their friction.
-        shown: meshes, each in a file ``meshes/NAME.stl`` beside the document, in metres.
-        solid: primitives; the foot's sphere is added to them.
+    comment with them. Each mesh of ``shown`` is in a file ``meshes/NAME.stl`` beside the document, in metres; the
+    foot's sphere joins ``solid``.
     """
     root = ET.Element("robot", name="monoped")
     # Only MuJoCo reads this: keep the visual meshes and their folder.
@@ -40,7 +35,9 @@ def urdf(arrays: RobotArrays, joints: Joints, shown: Sequence[Visual], solid: Se
             if collider.body == name:
                 _add_collision(link, collider)
         if name == "shank":
-            _add_foot(link, arrays)
+            foot = ET.SubElement(link, "collision", name="foot")  # the sphere that touches the ground
+            ET.SubElement(foot, "origin", xyz=numbers(0.0, 0.0, -arrays.shank_length_m[0]), rpy=_NO_TURN)
+            ET.SubElement(ET.SubElement(foot, "geometry"), "sphere", radius=numbers(arrays.foot_radius_m[0]))
     places_m = {"hip": 0.0, "knee": -float(arrays.thigh_length_m[0])}
     for joint, name in enumerate(JOINTS):
         _add_joint(root, arrays, joints, joint, z_m=places_m[name])
@@ -50,7 +47,7 @@ def urdf(arrays: RobotArrays, joints: Joints, shown: Sequence[Visual], solid: Se
 
 
 def _add_inertial(link: ET.Element, arrays: RobotArrays, body: int) -> None:
-    """Mass and inertia about the centre of mass, along the axes of the body frame."""
+    """Add mass and inertia about the centre of mass, along the axes of the body frame."""
     inertial = ET.SubElement(link, "inertial")
     ET.SubElement(inertial, "origin", xyz=numbers(*arrays.body_com_m[0, body]), rpy=_NO_TURN)
     ET.SubElement(inertial, "mass", value=numbers(arrays.body_mass_kg[0, body]))
@@ -68,15 +65,11 @@ def _add_visual(link: ET.Element, visual: Visual) -> None:
 
 
 def _add_collision(link: ET.Element, collider: Collider) -> None:
-    """A primitive; URDF's cylinders stand along z and have full lengths, boxes have full sizes."""
+    """Add a primitive; URDF's cylinders stand along z and have full lengths, boxes have full sizes."""
     element = ET.SubElement(link, "collision", name=collider.name)
     cylinder = collider.shape == "cylinder"
-    ET.SubElement(
-        element,
-        "origin",
-        xyz=numbers(*collider.position),
-        rpy=numbers(np.pi / 2, 0.0, 0.0) if cylinder else _NO_TURN,
-    )
+    turn = numbers(np.pi / 2, 0.0, 0.0) if cylinder else _NO_TURN
+    ET.SubElement(element, "origin", xyz=numbers(*collider.position), rpy=turn)
     geometry = ET.SubElement(element, "geometry")
     if cylinder:
         radius, half_length = collider.size
@@ -85,15 +78,8 @@ def _add_collision(link: ET.Element, collider: Collider) -> None:
         ET.SubElement(geometry, "box", size=numbers(*(2.0 * half for half in collider.size)))
 
 
-def _add_foot(link: ET.Element, arrays: RobotArrays) -> None:
-    """The sphere that touches the ground in the simulation."""
-    element = ET.SubElement(link, "collision", name="foot")
-    ET.SubElement(element, "origin", xyz=numbers(0.0, 0.0, -arrays.shank_length_m[0]), rpy=_NO_TURN)
-    ET.SubElement(ET.SubElement(element, "geometry"), "sphere", radius=numbers(arrays.foot_radius_m[0]))
-
-
 def _add_foot_frame(root: ET.Element, arrays: RobotArrays) -> None:
-    """A frame without mass at the centre of the foot's sphere, for planners and controllers."""
+    """Add a frame without mass at the centre of the foot's sphere, for planners and controllers."""
     ET.SubElement(root, "link", name="foot")
     element = ET.SubElement(root, "joint", name="foot", type="fixed")
     ET.SubElement(element, "origin", xyz=numbers(0.0, 0.0, -arrays.shank_length_m[0]), rpy=_NO_TURN)
@@ -102,7 +88,7 @@ def _add_foot_frame(root: ET.Element, arrays: RobotArrays) -> None:
 
 
 def _rotor_comment(arrays: RobotArrays, joints: Joints, joint: int) -> str:
-    """What a simulator must add for the parts that turn with the joint's motor."""
+    """Return what a simulator must add for the parts that turn with the joint's motor."""
     name, inertia_kg_m2 = JOINTS[joint], float(arrays.armature_kg_m2[0, joint])
     if name == "hip" or joints.rotors == "armature":
         return f" {name}: reflected rotor inertia {inertia_kg_m2!r} kg m2 "
@@ -114,7 +100,7 @@ def _rotor_comment(arrays: RobotArrays, joints: Joints, joint: int) -> str:
 
 
 def _add_joint(root: ET.Element, arrays: RobotArrays, joints: Joints, joint: int, *, z_m: float) -> None:
-    """The joint between a body and the next one, with its axis along +y of the body frame."""
+    """Add the joint between a body and the next one, with its axis along +y of the body frame."""
     name = JOINTS[joint]
     stop = (arrays.stops.hip, arrays.stops.knee)[joint]
     root.append(ET.Comment(_rotor_comment(arrays, joints, joint)))
@@ -123,13 +109,8 @@ def _add_joint(root: ET.Element, arrays: RobotArrays, joints: Joints, joint: int
     ET.SubElement(element, "parent", link=BODIES[joint])
     ET.SubElement(element, "child", link=BODIES[joint + 1])
     ET.SubElement(element, "axis", xyz="0 1 0")
-    ET.SubElement(
-        element,
-        "limit",
-        lower=numbers(stop.lower_rad),
-        upper=numbers(stop.upper_rad),
-        effort=numbers(arrays.peak_torque_n_m[0, joint]),
-        velocity=numbers(arrays.no_load_speed_rad_per_s[0, joint]),
-    )
+    effort, speed = arrays.peak_torque_n_m[0, joint], arrays.no_load_speed_rad_per_s[0, joint]
+    reach = {"lower": numbers(stop.lower_rad), "upper": numbers(stop.upper_rad)}
+    ET.SubElement(element, "limit", reach, effort=numbers(effort), velocity=numbers(speed))
     damping = joint_damping(arrays, joints)[0, joint]
     ET.SubElement(element, "dynamics", damping=numbers(damping), friction=numbers(joints.friction_n_m))

@@ -37,6 +37,20 @@ def test_both_files_say_the_same(rows, read):
     assert all(row["meaning"] for row in table)
 
 
+def test_every_length_of_the_leg_stands_there_in_its_order_with_words_of_its_own(rows, actuator_map):
+    leg = leg_dimensions(actuator_map)
+    lengths = {
+        f"leg_{field.name.removesuffix('_mm')}": getattr(leg, field.name)
+        for field in dataclasses.fields(leg)
+        if field.name.endswith("_mm")
+    }
+    found = {row.name: row for row in rows if row.name.startswith("leg_")}
+    assert {name: row.value for name, row in found.items()} == lengths
+    assert list(found) == list(lengths)
+    assert found["leg_fork"].meaning.startswith("free depth of the shank's fork below the knee axis")
+    assert not any(row.meaning == name.removeprefix("leg_").replace("_", " ") for name, row in found.items())
+
+
 def test_a_line_has_the_form_that_solidworks_links_to():
     row = Parameter(name="thigh_length", value=320.0, unit="mm", part="", meaning="")
     assert equations([row]) == '"thigh_length" = 320mm\n'
