@@ -24,6 +24,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+import moocore
 import numpy as np
 from numpy.typing import NDArray
 from search_reference import FOLDER, corner_of, read
@@ -32,7 +33,7 @@ from pareto_monoped.compute.threads import cores
 from pareto_monoped.definition.study import Study, study_from_dict
 from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 from pareto_monoped.pareto.front import front_mask
-from pareto_monoped.pareto.indicators import ReferencePoint, epsilon, hypervolume, igd_plus
+from pareto_monoped.pareto.indicators import ReferencePoint, hypervolume
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.search.algorithm import Algorithm
 from pareto_monoped.search.registry import make_algorithm
@@ -40,6 +41,7 @@ from pareto_monoped.search.scoring import judge, scores
 from pareto_monoped.study.simulator import Simulator, load_simulator
 
 HERE = Path(__file__).parent
+Points = NDArray[np.float64]
 MARKS = (1_000, 2_000, 5_000, 8_000)
 HEIGHTS_M = (0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3)
 # Ten weights of the paper's cost, chosen so that the runs end at points along the whole front.
@@ -74,6 +76,23 @@ def study(problem: dict[str, Any], settings: dict[str, Any], seed: int, evaluati
         settings = settings | {"iterations": max(1, evaluations // (8 * len(settings["height_weights"])))}
     values = {"name": "b", "case": "C", "evaluations": evaluations, "seed": seed, "algorithm": settings}
     return study_from_dict(values | problem, source="benchmark")
+
+
+def epsilon(points: Points, best: Points, objectives: Objectives) -> float:
+    """Additive epsilon indicator (Zitzler et al. 2003) of a front, as a share of the reference's extent; 0 is best."""
+    return float(moocore.epsilon_additive(*normalised(points, best, objectives)))
+
+
+def igd_plus(points: Points, best: Points, objectives: Objectives) -> float:
+    """IGD+ (Ishibuchi et al. 2015) of a front, as a share of the reference front's extent; 0 is best."""
+    return float(moocore.igd_plus(*normalised(points, best, objectives)))
+
+
+def normalised(points: Points, best: Points, objectives: Objectives) -> tuple[Points, Points]:
+    """Points and reference front as shares of its extent, less is better."""
+    reference = objectives.minimised(best)
+    low, extent = reference.min(axis=0), np.ptp(reference, axis=0)
+    return (objectives.minimised(points) - low) / extent, (reference - low) / extent
 
 
 class Archive:

@@ -15,7 +15,7 @@ import statistics
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from pareto_monoped.compute.threads import cores
-from pareto_monoped.definition.algorithms import DEFAULT_ALGORITHM, OwnSettings
+from pareto_monoped.definition.algorithms import DEFAULT_ALGORITHM
 from pareto_monoped.definition.study import Study
 from pareto_monoped.definition.variables import Bounds
 from pareto_monoped.design import NAMES, PAPER_NAMES
@@ -37,7 +37,7 @@ from pareto_monoped.jump.model import mjcf
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.search.algorithm import Algorithm, Proposal, Scores
 from pareto_monoped.search.registry import make_algorithm
-from pareto_monoped.search.space import AnyCoordinates
+from pareto_monoped.search.space import Coordinates
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study import session
 from pareto_monoped.study.run import run
@@ -62,11 +62,10 @@ def bare(simulator: Simulator, designs: NDArray[np.float64], ends: NDArray[np.in
     return np.concatenate([simulator.evaluator(part).height_m for part in np.split(designs, ends) if len(part)])
 
 
-class Timed:
+class Timed(Algorithm):
     """An algorithm that adds up the processor time of its thread."""
 
     def __init__(self, algorithm: Algorithm) -> None:
-        self.restore, self.state = algorithm.restore, algorithm.state
         self.seconds = 0.0
         self._algorithm = algorithm
 
@@ -83,12 +82,20 @@ class Timed:
         self._algorithm.tell(scores)
         self.seconds += time.thread_time() - began
 
+    def state(self) -> dict[str, Any]:
+        """The algorithm's state."""
+        return self._algorithm.state()
+
+    def restore(self, state: dict[str, Any], history: Iterable[tuple[NDArray[np.float64], Scores]]) -> None:
+        """Let the algorithm continue."""
+        self._algorithm.restore(state, history)
+
 
 def timed_run(study: Study, db: Path, workers: int) -> tuple[float, float, float]:
     """Wall and CPU seconds of a run, and the seconds of its algorithm."""
     made: list[Timed] = []
 
-    def make(study: Study, coordinates: AnyCoordinates | None = None, own: Any = None) -> Algorithm:
+    def make(study: Study, coordinates: Coordinates | None = None, own: Any = None) -> Algorithm:
         made.append(Timed(make_algorithm(study, coordinates, own)))
         return made[-1]
 
@@ -142,13 +149,10 @@ def main() -> None:
     study = Study.define(name="b", case="C", evaluations=evaluations, audit=False, algorithm=searched)
     simulator = load_simulator(study, workers=arguments.workers)
     simulator.probe()
-    assert not isinstance(study.algorithm, OwnSettings)
-    population = study.algorithm.population
-    assert population is not None
     stored, own, generations, batch = [], [], [], []
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        run(study, folder / "warm.db", evaluations=population, workers=arguments.workers)
+        run(study, folder / "warm.db", evaluations=100, workers=arguments.workers)
         for k in range(arguments.rounds):
             db = folder / f"{k}.db"
             run_s, run_cpu_s, thought = timed_run(study, db, arguments.workers)

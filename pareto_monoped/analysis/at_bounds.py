@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from pareto_monoped.definition.variables import Bounds
 from pareto_monoped.design import VARIABLES
 from pareto_monoped.measures import Measure, measure
-from pareto_monoped.search.space import MotorCoordinates
 from pareto_monoped.storage.front_reader import StudyFront
 from pareto_monoped.storage.reader import Checkpoint, StudyData
 
@@ -120,7 +119,7 @@ def bound_lines(data: StudyData, front: pd.DataFrame) -> dict[str, str]:
 def _ranges(data: StudyData, front: pd.DataFrame, name: str) -> list[_Range]:
     """The ranges of a variable: one for each motor that decides its gearboxes, else one; none without a choice."""
     where = data.coordinates
-    limits = where.motor_limits(name) if isinstance(where, MotorCoordinates) else None
+    limits = where.motor_limits(name)
     if limits is None:
         lower, upper = where.limits(name)
         listed = name in where.space.gears

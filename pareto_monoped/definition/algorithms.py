@@ -1,4 +1,4 @@
-"""The settings of each search algorithm, as in the ``[algorithm]`` table of a study file.
+"""Describe the settings of each search algorithm, as in the ``[algorithm]`` table of a study file.
 
 What a sweep of the paper's weighted search costs, and how a study file's budget is shared out among its weights.
 """
@@ -6,7 +6,7 @@ What a sweep of the paper's weighted search costs, and how a study file's budget
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import ConfigDict, Field
 
@@ -17,8 +17,15 @@ Population = Annotated[int, Field(ge=2, le=100_000)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
 
+class AlgorithmSettings:
+    """Base class of the settings of all algorithms."""
+
+    __slots__ = ()
+    name: str
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
-class EvolutionSettings:
+class EvolutionSettings(AlgorithmSettings):
     """NSGA-II, SMS-EMOA and AGE-MOEA2 of pymoo, with simulated binary crossover and polynomial mutation.
 
     The default population was chosen by measurement on Case C.
@@ -34,24 +41,23 @@ class EvolutionSettings:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SurrogateSettings:
+class SurrogateSettings(AlgorithmSettings):
     """Evolution that ranks many offspring by a cheap model and simulates the most promising."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: Literal["surrogate"]
-    #: Designs simulated in each of the first 50 generations; later ones have twice as many
+    #: designs simulated in each of the first 50 generations; later ones have twice as many
     population: Annotated[int, Field(ge=4, le=100_000)] = 40
-    #: Generations that are spread over the space before the model begins
+    #: generations that are spread over the space before the model begins
     drawn_generations: Annotated[int, Field(ge=1, le=1000)] = 3
-    offspring: Annotated[int, Field(ge=2, le=100)] = 40  #: how many offspring are ranked for each that is simulated
-    #: crossover_eta, mutation_eta: of simulated binary crossover and polynomial mutation
-    crossover_eta: Annotated[float, Field(ge=3.0, le=30.0)] = 15.0
-    mutation_eta: Annotated[float, Field(ge=3.0, le=30.0)] = 20.0
+    offspring: Annotated[int, Field(ge=2, le=100)] = 40  #: how many are ranked for each that is simulated
+    crossover_eta: Annotated[float, Field(ge=3.0, le=30.0)] = 15.0  #: of simulated binary crossover
+    mutation_eta: Annotated[float, Field(ge=3.0, le=30.0)] = 20.0  #: of polynomial mutation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OptunaSettings:
+class OptunaSettings(AlgorithmSettings):
     """Optuna's NSGA-II and TPE samplers, which are asked for ``population`` designs at a time.
 
     For NSGA-II this is the population (default 50, Optuna's own). TPE chooses one design at a time without knowing the
@@ -70,7 +76,7 @@ class OptunaSettings:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RandomSettings:
+class RandomSettings(AlgorithmSettings):
     """Designs drawn uniformly within the bounds: the yardstick that every other search must beat."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
@@ -85,7 +91,7 @@ PAPER_ITERATIONS = 200
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WeightedSettings:
+class WeightedSettings(AlgorithmSettings):
     """The paper's weighted CMA-ES: cost lambda1 Kh exp(-h) + lambda2 E, one run per weight, one after the other.
 
     For other objectives than the paper's, ``weighted_cost`` says what the cost is.
@@ -94,17 +100,17 @@ class WeightedSettings:
     __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: Literal["weighted_cmaes"]
-    #: Weight of the first objective in each run (lambda1); the other's is 1 - lambda1
+    #: weight of the first objective in each run (lambda1); the other's is 1 - lambda1
     height_weights: Annotated[tuple[Annotated[float, Field(gt=0.0, lt=1.0)], ...], Field(min_length=1)] = (0.5,)
     population: Population = 8  #: designs per iteration (paper: N = 8)
-    #: First step size, in variables scaled to their bounds (paper: 0.1)
+    #: first step size, in variables scaled to their bounds (paper: 0.1)
     sigma: Annotated[float, Field(gt=0.0, le=1.0)] = 0.1
     iterations: Annotated[int, Field(ge=1)] = PAPER_ITERATIONS  #: greatest number of iterations per run
-    #: Where each run starts, by variable name. Other variables start at the paper's nominal design, which is its start
-    #: vector [0.4, 0.4, 6, 6, 50, 2.5, 10].
+    #: where each run starts, by variable name; other variables start at the paper's nominal design, which is its start
+    #: vector [0.4, 0.4, 6, 6, 50, 2.5, 10]
     start: dict[str, float] = field(default_factory=_NOMINAL.design.as_dict)
-    #: Kh. The paper chooses it "to ensure that the order of both terms is similar". The default makes both terms equal
-    #: at the published nominal design: E exp(h) = 31.44 J exp(0.887). For the paper's objectives.
+    #: Kh, for the paper's objectives; the paper chooses it "to ensure that the order of both terms is similar", and the
+    #: default makes both terms equal at the published nominal design: E exp(h) = 31.44 J exp(0.887)
     height_scale_j: Annotated[float, Field(gt=0.0, allow_inf_nan=False)] = _NOMINAL.energy_j * math.exp(
         _NOMINAL.height_m
     )
@@ -115,7 +121,7 @@ OWN_ALGORITHM = "own:"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OwnSettings:
+class OwnSettings(AlgorithmSettings):
     """An algorithm of the user's own, of which a study knows the name alone."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
@@ -123,21 +129,12 @@ class OwnSettings:
     name: Annotated[str, Field(pattern=rf"^{OWN_ALGORITHM}[A-Za-z_][A-Za-z0-9_]{{0,99}}$")]
 
 
-AlgorithmSettings = (
-    EvolutionSettings | OptunaSettings | OwnSettings | RandomSettings | SurrogateSettings | WeightedSettings
-)
-
 ALGORITHMS: Mapping[str, type[AlgorithmSettings]] = {
-    "nsga2": EvolutionSettings,
-    "sms_emoa": EvolutionSettings,
-    "age_moea2": EvolutionSettings,
-    "optuna_nsga2": OptunaSettings,
-    "optuna_tpe": OptunaSettings,
-    "random": RandomSettings,
-    "surrogate": SurrogateSettings,
-    "weighted_cmaes": WeightedSettings,
+    name: kind
+    for kind in (EvolutionSettings, OptunaSettings, RandomSettings, SurrogateSettings, WeightedSettings)
+    for name in get_args(kind.__annotations__["name"])
 }
-"""Name of an algorithm in a study file -> its settings."""
+"""Name of an algorithm in a study file -> its settings. ``algorithms`` makes algorithms of them."""
 
 
 DEFAULT_ALGORITHM = SurrogateSettings(name="surrogate")

@@ -1,19 +1,19 @@
-"""The interface between run loop and search algorithms: ask for designs, tell their scores, save, restore.
+"""Define how run loop and search algorithms meet: ask for designs, tell their scores, save, restore.
 
 An algorithm never simulates and never stores. It sees the free variables only, in their own units, and a list of
 gearboxes by position (``study.coordinates``). A choice of motor is one more variable, whose values have no order
 (``study.motor_choice``): of the motor of both joints, or of that of the hip and that of the knee.
-
-State of NumPy's random generators as plain JSON values.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.errors import DatabaseError, InputError
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 
 Floats = NDArray[np.float64]
@@ -34,11 +34,10 @@ class Gear:
 class MotorKind:
     """What a search knows of a motor that it may choose."""
 
-    name: str  #: of the motor
-    #: peak_torque_n_m, no_load_speed_rad_per_s: of the motor itself
+    name: str
     peak_torque_n_m: float
     no_load_speed_rad_per_s: float
-    #: The gearboxes of each variable that chooses one, by ascending ratio
+    #: the gearboxes of each variable that chooses one, by ascending ratio
     gears: Mapping[str, tuple[Gear, ...]] = field(default_factory=dict)
 
 
@@ -46,7 +45,7 @@ class MotorKind:
 class MotorChoice:
     """A coordinate that chooses a motor."""
 
-    name: str  #: of the coordinate, a key of ``MOTOR_OF``
+    name: str  #: the coordinate's, a key of ``MOTOR_OF``
     motors: tuple[MotorKind, ...]  #: what it chooses from, at least two
 
 
@@ -65,18 +64,17 @@ class Space:
         (('thigh_length_m', 'shank_length_m', 'knee_ratio'), 0.3, 0.5, [False, False, True])
     """
 
-    #: names, lower, upper: names and bounds of the free variables, each of length d
-    names: tuple[str, ...]
-    lower: Floats
-    upper: Floats
+    names: tuple[str, ...]  #: names of the d free variables
+    lower: Floats  #: their lower bounds, shape (d,)
+    upper: Floats  #: their upper bounds, shape (d,)
     objectives: Objectives = HEIGHT_AND_ENERGY  #: two or three measures
-    #: The gearboxes of each variable that chooses one, for joints with one motor
+    #: the gearboxes of each variable that chooses one, for joints with one motor
     gears: Mapping[str, tuple[Gear, ...]] = field(default_factory=dict)
-    #: The coordinates that choose a motor, the last of ``names``; empty where every joint has one
+    #: the coordinates that choose a motor, the last of ``names``; empty where every joint has one
     choices: tuple[MotorChoice, ...] = ()
 
     def __repr__(self) -> str:
-        """One line: what is varied, and for what."""
+        """Say in one line what is varied, and for what."""
         return f"Space({len(self.names)} variables: {', '.join(self.names)}; for {', '.join(self.objectives.names)})"
 
     @property
@@ -90,7 +88,7 @@ class Space:
         return self.lower - 0.5 * self.whole, self.upper + 0.5 * self.whole
 
     def snap(self, values: Floats) -> Floats:
-        """The nearest points of the space to values within the edges, shape (n, d).
+        """Return the nearest points of the space to values within the edges, shape (n, d).
 
         Whole numbers are rounded, and shares of a motor's list of gearboxes moved to that of their gearbox, so that
         equal designs have equal values. All other values stay.
@@ -112,19 +110,19 @@ class Space:
         return tuple(self.names.index(choice.name) for choice in self.choices)
 
     def picked(self, choice: MotorChoice, values: Floats) -> NDArray[np.intp]:
-        """Which motor of a choice each of n points has, shape (n, d) -> (n,)."""
+        """Return which motor of a choice each of n points has, shape (n, d) -> (n,)."""
         return np.asarray(values[:, self.names.index(choice.name)], dtype=np.intp)
 
     def choice_for(self, name: str) -> MotorChoice:
-        """The choice of the motor whose gearboxes a variable of ``listed`` chooses from."""
+        """Find the choice of the motor whose gearboxes a variable of ``listed`` chooses from."""
         return next(choice for choice in self.choices if name in choice.motors[0].gears)
 
     def motor_of(self, name: str, values: Floats) -> NDArray[np.intp]:
-        """Which motor of ``choice_for(name)`` each of n points has, shape (n, d) -> (n,)."""
+        """Return which motor of ``choice_for(name)`` each of n points has, shape (n, d) -> (n,)."""
         return self.picked(self.choice_for(name), values)
 
     def gear_of(self, name: str, values: Floats) -> NDArray[np.intp]:
-        """Position of each point's gearbox in its motor's list, shape (n, d) -> (n,).
+        """Return the position of each point's gearbox in its motor's list, shape (n, d) -> (n,).
 
         Every gearbox of a list owns an equal share of the values from 0 to 1.
         """
@@ -133,7 +131,7 @@ class Space:
         return np.minimum(np.floor(share * (last + 1)), last).astype(np.intp)
 
     def last_gears(self, name: str) -> NDArray[np.intp]:
-        """Position of the last gearbox of each motor of ``choice_for(name)``, shape (number of motors,)."""
+        """Return the position of the last gearbox of each motor of ``choice_for(name)``, shape (motors,)."""
         return np.array([len(motor.gears[name]) - 1 for motor in self.choice_for(name).motors], dtype=np.intp)
 
 
@@ -142,7 +140,7 @@ class Proposal:
     """Designs to evaluate."""
 
     values: Floats  #: values of the free variables, shape (n, d)
-    #: Weight of the first objective in a weighted search (the paper's lambda1), stored with each of these trials; None
+    #: weight of the first objective in a weighted search (the paper's lambda1), stored with each of these trials; None
     #: for other searches
     height_weight: float | None = None
 
@@ -164,23 +162,24 @@ class Scores:
     """
 
     objectives: Objectives  #: which measures the search is for
-    values: Floats  #: of these m objectives, shape (n, m); NaN where the jump failed
-    violation: Floats  #: how far the constraints are missed, shape (n,): 0 where all hold, large where the jump failed
-    #: How far each of k constraints is missed, as a share of its limit, shape (n, k); it holds at <= 0. Shape (n, 0)
-    #: where a search has none.
+    values: Floats  #: values of these m objectives, shape (n, m); NaN where the jump failed
+    #: how far the constraints are missed, shape (n,): 0 where all hold, large where the jump failed
+    violation: Floats
+    #: how far each of k constraints is missed, as a share of its limit, shape (n, k); it holds at <= 0; shape (n, 0)
+    #: where a search has none
     constraints: Floats
 
     def __repr__(self) -> str:
-        """One line: how many designs, how many of them feasible, and the objectives."""
+        """Say in one line how many designs there are, how many of them are feasible, and the objectives."""
         feasible = int((self.violation <= 0.0).sum())
         return f"Scores({len(self.values)} designs, {feasible} feasible, {', '.join(self.objectives.names)})"
 
     def minimised(self) -> Floats:
-        """All objectives as minimisation, shape (n, m). Failed jumps get zeros; their violation tells them apart."""
+        """Return all objectives as minimisation, shape (n, m); zeros for failed jumps, which have a violation."""
         return np.nan_to_num(self.objectives.minimised(self.values), nan=0.0)
 
     def of(self, rows: slice) -> "Scores":
-        """The scores of some of the designs."""
+        """Return the scores of some of the designs."""
         return Scores(
             objectives=self.objectives,
             values=self.values[rows],
@@ -189,22 +188,26 @@ class Scores:
         )
 
 
-class Algorithm(Protocol):
-    """What the run loop asks of a search algorithm.
+class Algorithm(ABC):
+    """Base class of the search algorithms, as the run loop sees them.
 
     The loop calls ``state`` after ``tell`` or before the first ``ask``. A new algorithm with the same settings and
     seed, restored from that state, continues exactly as the saved one would have.
     """
 
+    @abstractmethod
     def ask(self) -> Proposal | None:
-        """The next designs to evaluate; None if the search has ended by itself."""
+        """Return the next designs to evaluate; None if the search has ended by itself."""
 
+    @abstractmethod
     def tell(self, scores: Scores) -> None:
         """Take the scores of all designs of the last ``ask``, in their order."""
 
+    @abstractmethod
     def state(self) -> dict[str, Any]:
-        """Everything needed to continue, as plain JSON values."""
+        """Return everything needed to continue, as plain JSON values."""
 
+    @abstractmethod
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
         """Continue from a saved state.
 
@@ -214,13 +217,15 @@ class Algorithm(Protocol):
                 the others ignore it.
         """
 
+    def same_designs(self, asked: Floats, stored: Floats) -> bool:
+        """Check that designs which a restored algorithm asks for again are those stored: here, to the last bit."""
+        return np.array_equal(asked, stored)
 
-def generator_state(generator: np.random.Generator) -> dict[str, Any]:
-    """State of a PCG64 generator as plain JSON values."""
-    state = dict(generator.bit_generator.state)
-    return {**state, "state": dict(state["state"])}
+    def other_designs(self, trials: str, source: str) -> InputError:
+        """Return the error for stored trials that are not those asked for.
 
-
-def set_generator_state(generator: np.random.Generator, state: dict[str, Any]) -> None:
-    """Set a generator to a state from ``generator_state``; NumPy refuses a damaged one."""
-    generator.bit_generator.state = state
+        Args:
+            trials: which, in words.
+            source: the study's database, for the message.
+        """
+        return DatabaseError(f"{source}: {trials} do not follow from its checkpoint; it is damaged, restore a copy")

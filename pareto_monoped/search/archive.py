@@ -1,141 +1,18 @@
-"""All simulated designs of a search, and how they stand: which are the front, and how far the others are behind it.
+"""Keep the simulated designs of a search, and find the front and how far the others are behind it.
 
-Distances between points and from a front, compiled by numba. Importing this module imports numba.
-
-All sums run over the axes in order, one point after the other, so a distance does not depend on the other points.
+Importing this module imports numba.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
 
 from pareto_monoped.compute.compiled import compiled
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.search.algorithm import Floats, Scores, Space
 from pareto_monoped.search.response_surface import features_of
-
-
-@compiled
-def squared_distances(points: Floats, others: Floats) -> Floats:
-    """Squares of the distances between n points and k others, shape (n, f) and (k, f) -> (n, k)."""
-    away = np.zeros((points.shape[0], others.shape[0]))
-    columns = others.T.copy()
-    for n in range(points.shape[0]):
-        row = away[n]
-        for f in range(points.shape[1]):
-            value, column = points[n, f], columns[f]
-            for k in range(row.shape[0]):
-                row[k] += (value - column[k]) * (value - column[k])
-    return away
-
-
-@compiled
-def nearest_squared(points: Floats, others: Floats) -> Floats:
-    """Square of the distance of each of n points to the nearest of k others, shape (n, f) and (k, f) -> (n,)."""
-    nearest = np.full(points.shape[0], np.inf)
-    columns = points.T.copy()
-    away = np.empty(points.shape[0])
-    # The points are the innermost loop: a processor takes several of them at once.
-    for k in range(others.shape[0]):
-        away[:] = 0.0
-        for f in range(columns.shape[0]):
-            value, column = others[k, f], columns[f]
-            for n in range(away.shape[0]):
-                away[n] += (column[n] - value) * (column[n] - value)
-        for n in range(away.shape[0]):
-            nearest[n] = min(nearest[n], away[n])
-    return nearest
-
-
-@compiled
-def nearest_places(points: Floats, others: Floats) -> NDArray[np.intp]:
-    """Which of k others is nearest each of n points, the first of equals, shape (n, f) and (k, f) -> (n,)."""
-    places = np.zeros(points.shape[0], dtype=np.intp)
-    for n in range(points.shape[0]):
-        least = np.inf
-        for k in range(others.shape[0]):
-            away = 0.0
-            for f in range(points.shape[1]):
-                away += (points[n, f] - others[k, f]) * (points[n, f] - others[k, f])
-            if away < least:
-                least, places[n] = away, k
-    return places
-
-
-@compiled
-def farthest_first(points: Floats, first: NDArray[np.intp], count: int) -> NDArray[np.intp]:
-    """Up to ``count`` of n points: the ``first``, then always the farthest from all chosen, shape (n, f) -> (k,).
-
-    It ends early where all points are equal to chosen ones.
-    """
-    chosen = np.empty(max(count, len(first)), dtype=np.intp)
-    chosen[: len(first)] = first
-    away = np.full(points.shape[0], np.inf)
-    known = 0
-    for place in range(len(chosen)):
-        if place >= len(first):
-            farthest = 0
-            for n in range(points.shape[0]):
-                if away[n] > away[farthest]:
-                    farthest = n
-            if not away[farthest] > 0.0:
-                break
-            chosen[place] = farthest
-        for n in range(points.shape[0]):
-            square = 0.0
-            for f in range(points.shape[1]):
-                square += (points[n, f] - points[chosen[place], f]) * (points[n, f] - points[chosen[place], f])
-            away[n] = min(away[n], square)
-        known += 1
-    return chosen[:known]
-
-
-@compiled
-def shortfall_of_two(points: Floats, front: Floats) -> Floats:
-    """The shift in both objectives after which no point of a front dominates a point, shape (n, 2) -> (n,).
-
-    The lesser of what is missing in either objective is greatest where the two cross along the front.
-
-    Args:
-        points: objectives, less is better.
-        front: shape (k, 2), k at least 1, by ascending first and descending second objective.
-    """
-    result = np.empty(points.shape[0])
-    last = front.shape[0] - 1
-    for n in range(points.shape[0]):
-        first, second = points[n, 0], points[n, 1]
-        low, high = 0, front.shape[0]
-        while low < high:
-            middle = (low + high) // 2
-            if front[middle, 0] - front[middle, 1] < first - second:
-                low = middle + 1
-            else:
-                high = middle
-        before, after = max(low - 1, 0), min(low, last)
-        result[n] = max(
-            min(first - front[before, 0], second - front[before, 1]),
-            min(first - front[after, 0], second - front[after, 1]),
-        )
-    return result
-
-
-@compiled
-def shortfall_of_more(points: Floats, front: Floats) -> Floats:
-    """The same for any number of objectives and any order of the front, shape (n, m) and (k, m) -> (n,)."""
-    columns = points.T.copy()
-    result, least = np.full(points.shape[0], -np.inf), np.empty(points.shape[0])
-    # The points are the innermost loop: a processor takes several of them at once.
-    for k in range(front.shape[0]):
-        least[:] = np.inf
-        for m in range(columns.shape[0]):
-            value, column = front[k, m], columns[m]
-            for n in range(least.shape[0]):
-                least[n] = min(least[n], column[n] - value)
-        for n in range(least.shape[0]):
-            result[n] = max(result[n], least[n])
-    return result
-
 
 _POSTS = 20
 """Parts of a front. Our own choice: with 40 designs per generation, two for each part."""
@@ -150,9 +27,9 @@ _KEPT = 8_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Standing:
-    """How n designs stand."""
+    """How n designs stand to the front."""
 
-    #: Objectives, less is better: logarithms where all values are above 0 and those of feasible designs above
+    #: objectives, less is better: logarithms where all values are above 0 and those of feasible designs above
     #: ``_LEAST_SHARE`` of the greatest, so that a percent counts as much at 10 J as at 70 J; shape (n, m), NaN where
     #: the jump failed
     costs: Floats
@@ -160,13 +37,12 @@ class Standing:
     posts: NDArray[np.intp]  #: places in ``front`` that stand for its parts, the best in each objective first
     behind: Floats  #: how far each design is behind the front as a share of its extent, plus its violation, shape (n,)
     order: NDArray[np.intp]  #: rows of the designs that jumped, the nearest to the front first
-    #: low, extent: of the front's costs, each of shape (m,)
-    low: Floats
-    extent: Floats
+    low: Floats  #: least costs of the front, shape (m,)
+    extent: Floats  #: extent of its costs, shape (m,)
     line: Floats  #: the front's costs as shares of its extent, in the order that ``shortfall`` wants, shape (k, m)
 
     def scaled(self, costs: Floats) -> Floats:
-        """Costs as shares of the front's extent, shape (n, m)."""
+        """Return costs as shares of the front's extent, shape (n, m)."""
         return (costs - self.low) / self.extent
 
     @property
@@ -175,31 +51,25 @@ class Standing:
         return self.scaled(self.costs[self.front[self.posts]])
 
     def parts(self, costs: Floats) -> NDArray[np.intp]:
-        """Which of the posts is nearest each of n designs, shape (n, m) -> (n,); 0 without a front."""
+        """Find which of the posts is nearest each of n designs, shape (n, m) -> (n,); 0 without a front."""
         if len(self.posts) == 0:
             return np.zeros(len(costs), dtype=np.intp)
-        return nearest_places(self.scaled(costs), self.stands)
+        return np.asarray(cdist(self.scaled(costs), self.stands, "sqeuclidean").argmin(axis=1))
 
 
 class Archive:
-    """The designs that a search has simulated; of very many, those that tell it most.
+    """Holds the designs that a search has simulated; of very many, those that tell it most.
 
     Above ``_MOST`` designs, ``_KEPT`` stay: the front, evenly thinned if it is long, then the designs close behind it,
     and a share spread over all others.
-
-    Attributes:
-        space: that is searched.
-        values: of the designs' variables, shape (n, d).
-        points: their features, see ``Features.scaled``, shape (n, f).
-        constraints: how far each of k constraints is missed, shape (n, k).
     """
 
     def __init__(self, space: Space) -> None:
-        self.space = space
+        self.space = space  #: what is searched
         self._features = features_of(space)
-        self.values: Floats = np.zeros((0, len(space.names)))
-        self.points: Floats = np.zeros((0, len(self._features.lower)))
-        self.constraints: Floats = np.zeros((0, 0))
+        self.values: Floats = np.zeros((0, len(space.names)))  #: values of the designs' variables, shape (n, d)
+        self.points: Floats = np.zeros((0, len(self._features.lower)))  #: their ``Features.scaled``, shape (n, f)
+        self.constraints: Floats = np.zeros((0, 0))  #: how far each of k constraints is missed, shape (n, k)
         self._objectives: Floats = np.zeros((0, len(space.objectives.names)))
         self._violation: Floats = np.zeros(0)
         # The front of the first designs, and of how many: what has been dominated once stays so.
@@ -222,7 +92,7 @@ class Archive:
         self._front, self._fronted = self._front[:0], 0
 
     def standing(self) -> Standing:
-        """How the designs stand now."""
+        """Find how the designs stand now."""
         costs = self._costs()
         jumped = np.asarray(np.isfinite(costs).all(axis=1))
         front = self._feasible_front()
@@ -269,7 +139,7 @@ class Archive:
 
 
 def _told_most(standing: Standing, count: int) -> NDArray[np.intp]:
-    """Rows of up to ``count`` designs that tell a search most, in the order of the trials.
+    """Choose rows of up to ``count`` designs that tell a search most, in the order of the trials.
 
     Half of them may be the front, from end to end; three quarters of the others are the nearest behind it, the rest are
     spread evenly over what lies farther.
@@ -285,7 +155,7 @@ def _told_most(standing: Standing, count: int) -> NDArray[np.intp]:
 
 
 def shortfall(points: Floats, front: Floats) -> Floats:
-    """How far points are behind a front: the shift in all objectives after which none is dominated.
+    """Measure how far points are behind a front: the shift in all objectives after which none is dominated.
 
     The additive epsilon indicator (Zitzler et al. 2003) of the front against each point; below 0 for a point that gains
     over the front.
@@ -297,13 +167,33 @@ def shortfall(points: Floats, front: Floats) -> Floats:
     Returns:
         Shape (n,).
     """
-    if front.shape[1] == 2:
-        return shortfall_of_two(points, front)
-    return shortfall_of_more(points, front)
+    if front.shape[1] > 2:
+        return _shortfall_of_more(points, front)
+    # The lesser of what is missing in either objective is greatest where the two cross along the front.
+    crossing = np.searchsorted(front[:, 0] - front[:, 1], points[:, 0] - points[:, 1])
+    either = np.stack((np.maximum(crossing - 1, 0), np.minimum(crossing, len(front) - 1)))
+    return np.asarray(np.minimum(points[:, 0] - front[either, 0], points[:, 1] - front[either, 1]).max(axis=0))
+
+
+@compiled
+def _shortfall_of_more(points: Floats, front: Floats) -> Floats:
+    """Compute ``shortfall`` for any number of objectives and any order of the front, shape (n, m), (k, m) -> (n,)."""
+    columns = points.T.copy()
+    result, least = np.full(points.shape[0], -np.inf), np.empty(points.shape[0])
+    # The points are the innermost loop: a processor takes several of them at once.
+    for k in range(front.shape[0]):
+        least[:] = np.inf
+        for m in range(columns.shape[0]):
+            value, column = front[k, m], columns[m]
+            for n in range(least.shape[0]):
+                least[n] = min(least[n], column[n] - value)
+        for n in range(least.shape[0]):
+            result[n] = max(result[n], least[n])
+    return result
 
 
 def along(front: Floats) -> Floats:
-    """A front of two objectives from end to end, shape (k, 2); any other as it is.
+    """Sort a front of two objectives from end to end, shape (k, 2); return any other as it is.
 
     Along it, a point falls ever less short in the first objective and ever more in the second.
     """
@@ -311,6 +201,10 @@ def along(front: Floats) -> Floats:
 
 
 def _posts(front: Floats) -> NDArray[np.intp]:
-    """Rows of the front that stand for its parts: the best in each objective, then always the farthest from them."""
+    """Choose rows that stand for a front's parts: the best in each objective, then always the farthest from them."""
     chosen = list(dict.fromkeys(front.argmin(axis=0).tolist()))
-    return farthest_first(front, np.array(chosen, dtype=np.intp), _POSTS)
+    away = cdist(front, front[chosen], "sqeuclidean").min(axis=1)
+    while len(chosen) < _POSTS and away.max() > 0.0:
+        chosen.append(int(away.argmax()))
+        away = np.minimum(away, cdist(front, front[chosen[-1:]], "sqeuclidean")[:, 0])
+    return np.array(chosen, dtype=np.intp)

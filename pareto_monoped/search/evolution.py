@@ -1,10 +1,10 @@
-"""pymoo's NSGA-II, SMS-EMOA and AGE-MOEA2 behind the ask-and-tell interface."""
+"""Search with NSGA-II, SMS-EMOA or AGE-MOEA2 of pymoo."""
 
+import time
 from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pymoo.algorithms.base.genetic import GeneticAlgorithm
 from pymoo.core.duplicate import DefaultDuplicateElimination
 from pymoo.core.population import Population
@@ -15,13 +15,13 @@ from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
 
 from pareto_monoped.definition.algorithms import EvolutionSettings
-from pareto_monoped.search.algorithm import Floats, Proposal, Scores, Space, generator_state, set_generator_state
+from pareto_monoped.search.algorithm import Algorithm, Floats, Proposal, Scores, Space
 from pareto_monoped.search.seen import Seen, drawn
 from pareto_monoped.search.space import MotorPM, MotorSBX
 
 
-class Evolution:
-    """A genetic algorithm of pymoo that asks for no design twice. ``nsga2.Nsga2`` is the same as its NSGA-II, faster.
+class Evolution(Algorithm):
+    """Lets a genetic algorithm of pymoo ask for no design twice.
 
     Between generations, all three keep only the population with its ranks and crowding distances, the number of
     generations and the random generator. These are the state. The designs so far are in the history.
@@ -37,7 +37,7 @@ class Evolution:
         self._asked: Population = Population.empty()
 
     def ask(self) -> Proposal | None:
-        """The first population, later new offspring of the current one.
+        """Return the first population, later new offspring of the current one.
 
         Where a population has only known offspring, as in a small space, new designs are drawn uniformly; None if
         there are none left.
@@ -60,8 +60,8 @@ class Evolution:
         self._algorithm.tell(infills=self._asked)
 
     def state(self) -> dict[str, Any]:
-        """Population, ranks, crowding distances, number of generations, random generator."""
-        state: dict[str, Any] = {"generator": generator_state(self._algorithm.random_state)}
+        """Return population, ranks, crowding distances, number of generations, and state of the random generator."""
+        state: dict[str, Any] = {"generator": self._algorithm.random_state.bit_generator.state}
         if self._algorithm.is_initialized:
             population = self._algorithm.pop
             state["iteration"] = self._algorithm.n_iter
@@ -70,7 +70,7 @@ class Evolution:
             for key in ("rank", "crowding"):
                 # Infeasible survivors have neither rank nor crowding distance. The ends of the front have an infinite
                 # crowding distance, which JSON cannot hold as a number.
-                state[key] = [None if value is None else jsonable(float(value)) for value in population.get(key)]
+                state[key] = [None if value is None else _jsonable(float(value)) for value in population.get(key)]
         return state
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
@@ -78,7 +78,7 @@ class Evolution:
         for values, _ in history:
             self._seen.add(values)
         algorithm = self._algorithm
-        set_generator_state(algorithm.random_state, state["generator"])
+        algorithm.random_state.bit_generator.state = state["generator"]
         if "X" not in state:
             return
         arrays = {key: np.array(state[key], dtype=np.float64) for key in ("X", "F", "G")}
@@ -91,14 +91,14 @@ class Evolution:
             for individual, value in zip(population, state[key], strict=True):
                 if value is not None:
                     individual.set(key, int(value) if key == "rank" else float(value))
-        algorithm._initialize()
+        algorithm.start_time = time.time()  # pymoo subtracts it where no offspring is new
         algorithm.pop = population
         algorithm.n_iter = int(state["iteration"])
         algorithm.is_initialized = True
 
 
-def jsonable(value: float) -> float | str:
-    """A number as JSON can hold it: an infinite one as text."""
+def _jsonable(value: float) -> float | str:
+    """Return a number as JSON can hold it: an infinite one as text."""
     return value if np.isfinite(value) else str(value)
 
 
@@ -120,13 +120,14 @@ class _Unseen(DefaultDuplicateElimination):  # type: ignore[misc]  # pymoo has n
         super().__init__()
         self._seen = seen
 
-    def _do(self, pop: Population, other: Population | None, is_duplicate: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        found: NDArray[np.bool_] = super()._do(pop, other, is_duplicate)
-        return found if other is not None else found | ~self._seen.new(pop.get("X"))
+    def do(self, pop: Population, *others: Population, **settings: Any) -> Population:
+        """Return those that are new."""
+        found = super().do(pop, *others, **settings)
+        return found[self._seen.new(found.get("X"))] if len(found) else found
 
 
-def varying(space: Space, settings: EvolutionSettings) -> tuple[SBX, PM]:
-    """Crossover and mutation of all three.
+def _varying(space: Space, settings: EvolutionSettings) -> tuple[SBX, PM]:
+    """Make the crossover and the mutation of all three.
 
     pymoo shares its default operators between algorithms. New ones keep two studies in one process independent.
     """
@@ -142,7 +143,7 @@ def _algorithm(settings: EvolutionSettings, seed: int, space: Space, seen: Seen)
     from pymoo.algorithms.moo.nsga2 import NSGA2
     from pymoo.algorithms.moo.sms import SMSEMOA
 
-    crossover, mutation = varying(space, settings)
+    crossover, mutation = _varying(space, settings)
     kind = {"nsga2": NSGA2, "sms_emoa": SMSEMOA, "age_moea2": AGEMOEA2}[settings.name]
     return kind(
         pop_size=settings.population,

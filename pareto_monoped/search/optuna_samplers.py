@@ -1,4 +1,4 @@
-"""Optuna's NSGA-II and TPE samplers behind the ask-and-tell interface."""
+"""Search with NSGA-II or TPE of Optuna."""
 
 import warnings
 from collections.abc import Iterable, Iterator
@@ -10,15 +10,15 @@ import optuna
 
 from pareto_monoped.definition.algorithms import OptunaSettings
 from pareto_monoped.pareto.objectives import Objectives
-from pareto_monoped.search.algorithm import MOTOR_OF, Floats, Proposal, Scores, Space
+from pareto_monoped.search.algorithm import MOTOR_OF, Algorithm, Floats, Proposal, Scores, Space
 from pareto_monoped.search.seen import Seen, drawn
 
 _KNOWN = 20
 """Known designs in a batch after which uniform ones are drawn; our own choice, a fraction of a second of waiting."""
 
 
-class OptunaSampler:
-    """A sampler of Optuna on a study in memory.
+class OptunaSampler(Algorithm):
+    """Asks a sampler of Optuna, on a study in memory.
 
     Optuna keeps what its samplers learn in the trials of its study; a sampler itself holds only a random generator.
     Each generation therefore gets a new sampler, whose seed follows from the study's seed and the number of the
@@ -38,7 +38,7 @@ class OptunaSampler:
             self._study = optuna.create_study(directions=_directions(space.objectives), sampler=self._sampler())
 
     def ask(self) -> Proposal | None:
-        """The sampler's next designs that are new; uniform ones after ``_KNOWN`` known ones; None if there is no other.
+        """Return the sampler's next new designs; uniform ones after ``_KNOWN`` known ones; None if there is no other.
 
         Known designs end as failed trials. Samplers ignore those, so a study rebuilt without them continues alike.
         """
@@ -101,7 +101,7 @@ class OptunaSampler:
         self._generation += 1
 
     def state(self) -> dict[str, Any]:
-        """The number of generations; the trials are in the database."""
+        """Return the number of generations; the trials are in the database."""
         return {"generation": self._generation}
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
@@ -160,7 +160,7 @@ def _directions(objectives: Objectives) -> list[optuna.study.StudyDirection]:
 
 
 def _values(scores: Scores) -> list[list[float]]:
-    """The objectives with their own signs, as lists of n times m; zeros for a failed jump."""
+    """Return the objectives with their own signs, as lists of n times m; zeros for a failed jump."""
     values: list[list[float]] = scores.objectives.minimised(scores.minimised()).tolist()
     return values
 

@@ -1,4 +1,4 @@
-"""A search algorithm of the user's own behind the protocol of this package: checked, and rebuilt by asking it again.
+"""Check a search algorithm of the user's own, and rebuild it by asking it again.
 
 A database stores the name of its class, never the algorithm. Whether it asks for the same designs again is its
 author's duty; that it does is checked against all stored trials when a study goes on.
@@ -12,14 +12,14 @@ import numpy as np
 
 from pareto_monoped.definition.algorithms import OWN_ALGORITHM, OwnSettings
 from pareto_monoped.errors import StudyError, complaint
-from pareto_monoped.search.algorithm import Floats, Proposal, Scores, Space
+from pareto_monoped.search.algorithm import Algorithm, Floats, Proposal, Scores, Space
 
 _SAME = 1e-9
-"""Relative difference up to which a variable is the stored one."""
+"""Relative difference up to which a variable counts as the stored one."""
 
 
 def own_algorithm_name(given: object) -> str:
-    """The name under which a study stores an algorithm of the user's own: "own:" and the name of its class.
+    """Return the name under which a study stores an algorithm of the user's own: "own:" and the name of its class.
 
     Raises:
         StudyError: it can neither be asked and told nor make something that can.
@@ -33,16 +33,16 @@ def own_algorithm_name(given: object) -> str:
     return f"{OWN_ALGORITHM}{name}"
 
 
-class OwnAlgorithm:
-    """An algorithm of the user's own; see ``protocol.Algorithm``."""
+class OwnAlgorithm(Algorithm):
+    """Adapts an algorithm of the user's own, whose trials are replayed on restore."""
 
     def __init__(self, space: Space, settings: OwnSettings, seed: int, given: Any) -> None:
-        """Take it, or let it be made.
+        """Take the algorithm, or make it.
 
         Args:
             space: what is searched.
-            settings: its name.
-            seed: of the study.
+            settings: the algorithm's name.
+            seed: the study's.
             given: an object with ``ask`` and ``tell``, or a class or function of ``space`` and ``seed`` that makes one.
 
         Raises:
@@ -65,7 +65,7 @@ class OwnAlgorithm:
                 raise StudyError(f"{self._source}: has no {part}(); it must have ask() and tell(scores)")
 
     def ask(self) -> Proposal | None:
-        """The next designs, as the algorithm gives them: an array of shape (n, d), a ``Proposal``, or None at its end.
+        """Return the designs that the algorithm gives: an array of shape (n, d), a ``Proposal``, or None at its end.
 
         Raises:
             StudyError: they are something else, or beyond the bounds.
@@ -82,25 +82,33 @@ class OwnAlgorithm:
         self._called(self._inner.tell, scores)
 
     def state(self) -> dict[str, Any]:
-        """Nothing: the trials are in the database, and the algorithm is told them again."""
+        """Return nothing: the trials are in the database, and they are replayed on restore."""
         return {}
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
-        """Ask and tell again what is stored.
+        """Replay the stored trials.
 
         Raises:
             StudyError: it asks for other designs than those stored.
         """
         for number, (values, scores) in enumerate(history):
             asked = self.ask()
-            if asked is None or not same_designs(asked.values, values):
-                raise StudyError(self.other_designs(f"generation {number}"))
+            if asked is None or not self.same_designs(asked.values, values):
+                raise self.other_designs(f"generation {number}", "")
             self.tell(scores)
 
-    def other_designs(self, where: str) -> str:
-        """The message for designs that are not those stored."""
-        return (
-            f"{self._source}: asks for other designs in {where} than those stored; give it as it was at the start of "
+    def same_designs(self, asked: Floats, stored: Floats) -> bool:
+        """Compare the number of designs, and every value to nine digits.
+
+        One rule holds for whole generations and for one that was cut short. Equality to the last bit would be too
+        much: another version of a library may round a value of the user's own algorithm differently.
+        """
+        return asked.shape == stored.shape and bool(np.allclose(asked, stored, rtol=_SAME, atol=_SAME))
+
+    def other_designs(self, trials: str, source: str) -> StudyError:
+        """Blame the algorithm, not the database."""
+        return StudyError(
+            f"{self._source}: asks for other designs in {trials} than those stored; give it as it was at the start of "
             "the study, with the same seed"
         )
 
@@ -127,12 +135,3 @@ class OwnAlgorithm:
         except Exception as error:
             text = re.sub(r"\s+", " ", f"{type(error).__name__}: {error}")
             raise StudyError(f"{self._source}: {text}; correct it") from error
-
-
-def same_designs(asked: Floats, stored: Floats) -> bool:
-    """Whether designs are those stored: in number, and in every value to nine digits.
-
-    One rule for whole generations and for one that was cut short. Equality to the last bit would be too much: another
-    version of a library may round a value of the user's own algorithm differently.
-    """
-    return asked.shape == stored.shape and bool(np.allclose(asked, stored, rtol=_SAME, atol=_SAME))

@@ -1,6 +1,6 @@
 """What a search expects of designs that it has not simulated: a polynomial, corrected by its errors near by.
 
-Which of many designs are worth simulating, by what a model expects of them.
+Choose which of many designs are worth simulating, by what a model expects of them.
 """
 
 from collections.abc import Callable
@@ -10,17 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
 
-from pareto_monoped.compute.compiled import compiled
 from pareto_monoped.search.algorithm import Floats
-from pareto_monoped.search.archive import (
-    Archive,
-    Standing,
-    nearest_places,
-    nearest_squared,
-    shortfall,
-    squared_distances,
-)
+from pareto_monoped.search.archive import Archive, Standing, shortfall
 from pareto_monoped.search.kriging import kriging_factors, kriging_shares, kriging_values
 from pareto_monoped.search.response_surface import Features, cubic_values, fitted
 
@@ -176,13 +169,13 @@ class Prediction:
 
     def _away(self, part: int) -> Floats:
         """Squared distance of these designs from a post, shape (designs,)."""
-        away: Floats = squared_distances(self._standing.stands[part : part + 1], self._places)[0]
+        away: Floats = cdist(self._standing.stands[part : part + 1], self._places, "sqeuclidean")[0]
         return away
 
     @cached_property
     def _near(self) -> NDArray[np.intp]:
         """Part of the front that each of these designs is in or close behind; -1 if it is far behind."""
-        nearest = nearest_places(self._places, self._standing.stands)
+        nearest = self._standing.parts(self._standing.costs[self._known])
         return np.where(self._standing.behind[self._known] < _CORRECTED, nearest, -1)
 
 
@@ -224,7 +217,7 @@ CURIOSITY = 0.1
 
 
 def ranked(costs: Floats, violation: Floats, standing: Standing) -> NDArray[np.intp]:
-    """Rows of n designs in the order in which they are worth simulating.
+    """Sort rows of n designs by how much they are worth simulating.
 
     The best gain over the front in each of its parts comes first, then the second best, and so on. Without a front,
     the least violation comes first.
@@ -238,31 +231,21 @@ def ranked(costs: Floats, violation: Floats, standing: Standing) -> NDArray[np.i
         return np.argsort(violation, kind="stable")
     gain = gains(costs, violation, standing)
     order = np.argsort(-gain, kind="stable")
-    return order[_in_turns(standing.parts(costs)[order], max(len(standing.posts), 1))]
+    return order[_in_turns(standing.parts(costs)[order])]
 
 
-@compiled
-def _in_turns(parts: NDArray[np.intp], count: int) -> NDArray[np.intp]:
-    """The first row of each of ``count`` parts, then the second of each, and so on, shape (n,) -> (n,)."""
-    lengths, turns = np.zeros(count, dtype=np.intp), np.empty(len(parts), dtype=np.intp)
-    for n in range(len(parts)):
-        turns[n] = lengths[parts[n]]
-        lengths[parts[n]] += 1
-    first = np.zeros(len(parts) + 1, dtype=np.intp)
-    for n in range(len(parts)):
-        first[turns[n] + 1] += 1
-    first = np.cumsum(first)
-    rows = np.empty(len(parts), dtype=np.intp)
-    for n in range(len(parts)):
-        rows[first[turns[n]]] = n
-        first[turns[n]] += 1
-    return rows
+def _in_turns(parts: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return the first row of each part, then the second of each, and so on, shape (n,) -> (n,)."""
+    order = np.argsort(parts, kind="stable")
+    turns = np.empty_like(order)
+    turns[order] = np.arange(len(parts)) - np.searchsorted(parts[order], parts[order])
+    return np.argsort(turns, kind="stable")
 
 
 def unlike(
     costs: Floats, violation: Floats, standing: Standing, points: Floats, known: Floats, count: int
 ) -> list[int]:
-    """Rows of ``count`` of n designs that promise much and are far from what is known, and from each other.
+    """Choose rows of ``count`` of n designs that promise much and are far from what is known, and from each other.
 
     Args:
         costs: expected costs, as ``Standing`` has them, shape (n, m).
@@ -275,19 +258,19 @@ def unlike(
     gain = gains(costs, violation, standing, LENIENT_PENALTY)
     looked_at = np.argsort(-gain, kind="stable")[: count * _LOOKED_AT]
     points, gain = points[looked_at], gain[looked_at]
-    away = _nearest(points, known)
+    away = cdist(points, known).min(axis=1)
     chosen: list[int] = []
     for _ in range(min(count, len(points))):
         worth = gain + CURIOSITY * np.minimum(away, 1.0)
         worth[chosen] = -np.inf
         chosen.append(int(worth.argmax()))
-        away = np.minimum(away, _nearest(points, points[chosen[-1:]]))
+        away = np.minimum(away, cdist(points, points[chosen[-1:]])[:, 0])
     best: list[int] = looked_at[chosen].tolist()
     return best
 
 
 def gains(costs: Floats, violation: Floats, standing: Standing, penalty: float = _PENALTY) -> Floats:
-    """How far n designs are ahead of the front, as a share of its extent, less what violations cost, shape (n,).
+    """Measure how far n designs are ahead of the front, as a share of its extent, less what violations cost: (n,).
 
     Args:
         costs: expected costs, as ``Standing`` has them, shape (n, m).
@@ -296,8 +279,3 @@ def gains(costs: Floats, violation: Floats, standing: Standing, penalty: float =
         penalty: what a violation of 1 costs.
     """
     return -shortfall(standing.scaled(costs), standing.line) - penalty * violation
-
-
-def _nearest(points: Floats, others: Floats) -> Floats:
-    """Distance of each of n points to the nearest of k others, shape (n, f) and (k, f) -> (n,)."""
-    return np.asarray(np.sqrt(nearest_squared(points, others)))

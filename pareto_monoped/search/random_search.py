@@ -1,4 +1,4 @@
-"""Random search: the yardstick that every other algorithm must beat."""
+"""Search at random: the yardstick that every other algorithm must beat."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 
 from pareto_monoped.definition.algorithms import RandomSettings
-from pareto_monoped.search.algorithm import Floats, Proposal, Scores, Space, generator_state, set_generator_state
+from pareto_monoped.search.algorithm import Algorithm, Floats, Proposal, Scores, Space
 from pareto_monoped.search.seen import Seen, drawn
 
 
-class RandomSearch:
+class RandomSearch(Algorithm):
     """Draws designs uniformly within the bounds, none of them twice."""
 
     def __init__(self, space: Space, settings: RandomSettings, seed: int) -> None:
@@ -21,7 +21,7 @@ class RandomSearch:
         self._asked = np.zeros((0, len(space.names)))
 
     def ask(self) -> Proposal | None:
-        """``population`` designs, independent of all scores; fewer or None if nearly all designs have been drawn."""
+        """Return ``population`` designs, independent of all scores; fewer or None if nearly all have been drawn."""
         self._asked = drawn(self._space, self._seen, self._generator, self._batch)
         return Proposal(values=self._asked) if len(self._asked) else None
 
@@ -30,11 +30,11 @@ class RandomSearch:
         self._seen.add(self._asked)
 
     def state(self) -> dict[str, Any]:
-        """State of the random generator."""
-        return {"generator": generator_state(self._generator)}
+        """Return the state of the random generator."""
+        return {"generator": self._generator.bit_generator.state}
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
         """Set the random generator, and remember the designs of the history."""
-        set_generator_state(self._generator, state["generator"])
+        self._generator.bit_generator.state = state["generator"]
         for values, _ in history:
             self._seen.add(values)

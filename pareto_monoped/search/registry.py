@@ -1,8 +1,10 @@
-"""The registry of search algorithms: settings in, algorithm out. Each implementation is imported only when used."""
+"""Make the search algorithm that a study's settings name. Each implementation is imported only when it is used."""
 
+from functools import singledispatch
 from typing import Any
 
 from pareto_monoped.definition.algorithms import (
+    OWN_ALGORITHM,
     EvolutionSettings,
     OptunaSettings,
     OwnSettings,
@@ -14,11 +16,11 @@ from pareto_monoped.definition.study import Study
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import StudyError
 from pareto_monoped.search.algorithm import Algorithm
-from pareto_monoped.search.space import AnyCoordinates, Coordinates, plain_coordinates
+from pareto_monoped.search.space import Coordinates, plain_coordinates
 
 
-def make_algorithm(study: Study, coordinates: AnyCoordinates | None = None, own: Any = None) -> Algorithm:
-    """The search algorithm that the study's settings name, before its first ``ask``.
+def make_algorithm(study: Study, coordinates: Coordinates | None = None, own: Any = None) -> Algorithm:
+    """Make the search algorithm that the study's settings name, before its first ``ask``.
 
     Args:
         study: its settings.
@@ -28,41 +30,58 @@ def make_algorithm(study: Study, coordinates: AnyCoordinates | None = None, own:
     Raises:
         StudyError: the settings name the user's own algorithm, and ``own`` is another or None.
     """
-    if own is not None and not isinstance(study.algorithm, OwnSettings):
+    settings = study.algorithm
+    if own is not None and not settings.name.startswith(OWN_ALGORITHM):
         raise StudyError(
-            f"algorithm: an own one is given, but the study's is {study.algorithm.name!r}, which it knows; leave it out"
+            f"algorithm: an own one is given, but the study's is {settings.name!r}, which it knows; leave it out"
         )
-    coordinates = coordinates or plain_coordinates(study)
-    space = coordinates.space
-    match study.algorithm:
-        case EvolutionSettings() as settings:
-            if settings.name == "nsga2":
-                from pareto_monoped.search.nsga2 import Nsga2
+    return _made(settings, study, coordinates or plain_coordinates(study), own)
 
-                return Nsga2(space, settings, study.seed)
-            from pareto_monoped.search.evolution import Evolution
 
-            return Evolution(space, settings, study.seed)
-        case OptunaSettings() as settings:
-            from pareto_monoped.search.optuna_samplers import OptunaSampler
+@singledispatch
+def _made(settings: Any, study: Study, where: Coordinates, own: Any) -> Algorithm:
+    """Make an algorithm. Each function registered here belongs to the settings that its first argument is of."""
+    raise NotImplementedError(f"no algorithm for {settings!r}")
 
-            return OptunaSampler(space, settings, study.seed)
-        case SurrogateSettings() as settings:
-            from pareto_monoped.search.surrogate import SurrogateSearch
 
-            return SurrogateSearch(space, settings, study.seed)
-        case WeightedSettings() as settings:
-            from pareto_monoped.search.weighted import WeightedSearch
+@_made.register
+def _(settings: EvolutionSettings, study: Study, where: Coordinates, own: Any) -> Algorithm:
+    from pareto_monoped.search.evolution import Evolution
 
-            start = PAPER_CASES["nominal"].design.replace(settings.start).as_array()
-            assert isinstance(coordinates, Coordinates)  # the study file refuses several motors
-            first = coordinates.values(start[None])[0]
-            return WeightedSearch(space, settings, first, study.seed, study.reference_point)
-        case OwnSettings() as settings:
-            from pareto_monoped.search.own_algorithm import OwnAlgorithm
+    return Evolution(where.space, settings, study.seed)
 
-            return OwnAlgorithm(space, settings, study.seed, own)
-        case RandomSettings() as settings:
-            from pareto_monoped.search.random_search import RandomSearch
 
-            return RandomSearch(space, settings, study.seed)
+@_made.register
+def _(settings: OptunaSettings, study: Study, where: Coordinates, own: Any) -> Algorithm:
+    from pareto_monoped.search.optuna_samplers import OptunaSampler
+
+    return OptunaSampler(where.space, settings, study.seed)
+
+
+@_made.register
+def _(settings: OwnSettings, study: Study, where: Coordinates, own: Any) -> Algorithm:
+    from pareto_monoped.search.own_algorithm import OwnAlgorithm
+
+    return OwnAlgorithm(where.space, settings, study.seed, own)
+
+
+@_made.register
+def _(settings: RandomSettings, study: Study, where: Coordinates, own: Any) -> Algorithm:
+    from pareto_monoped.search.random_search import RandomSearch
+
+    return RandomSearch(where.space, settings, study.seed)
+
+
+@_made.register
+def _(settings: SurrogateSettings, study: Study, where: Coordinates, own: Any) -> Algorithm:
+    from pareto_monoped.search.surrogate import SurrogateSearch
+
+    return SurrogateSearch(where.space, settings, study.seed)
+
+
+@_made.register
+def _(settings: WeightedSettings, study: Study, where: Coordinates, own: Any) -> Algorithm:
+    from pareto_monoped.search.weighted import WeightedSearch
+
+    start = PAPER_CASES["nominal"].design.replace(settings.start).as_array()
+    return WeightedSearch(where.space, settings, where.values(start[None])[0], study.seed, study.reference_point)

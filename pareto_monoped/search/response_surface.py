@@ -1,6 +1,6 @@
 """A cheap model of what a search needs to know: weighted cubic ridge regression on features of a design.
 
-Cubic polynomials of many points, compiled by numba. Importing this module imports numba.
+Compute cubic polynomials of many points. Importing this module imports numba.
 
 A cubic of f features has a coefficient for every product of three of (1, features), repeated ones too, in the order of
 ``itertools.combinations_with_replacement``.
@@ -8,6 +8,7 @@ A cubic of f features has a coefficient for every product of three of (1, featur
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import combinations_with_replacement
 
 import numpy as np
 from scipy.linalg.lapack import dposv
@@ -20,27 +21,16 @@ _TOGETHER = 64
 choice."""
 
 
-@compiled
 def cubic_terms(points: Floats) -> Floats:
-    """All products of three of (1, features), shape (n, f) -> (n, t)."""
-    count, width = points.shape[0], points.shape[1] + 1
-    terms = np.empty((count, width * (width + 1) * (width + 2) // 6))
-    row = np.ones(width)
-    for n in range(count):
-        row[1:] = points[n]
-        t = 0
-        for i in range(width):
-            for j in range(i, width):
-                both = row[i] * row[j]
-                for k in range(j, width):
-                    terms[n, t] = both * row[k]
-                    t += 1
-    return terms
+    """Compute all products of three of (1, features), shape (n, f) -> (n, t)."""
+    factors = np.column_stack((np.ones(len(points)), points))
+    i, j, k = np.array(list(combinations_with_replacement(range(factors.shape[1]), 3))).T
+    return np.asarray(np.take(factors, i, axis=1) * np.take(factors, j, axis=1) * np.take(factors, k, axis=1))
 
 
 @compiled
 def cubic_values(points: Floats, coefficients: Floats) -> Floats:
-    """``cubic_terms(points) @ coefficients`` but for rounding, shape (n, f) and (t, k) -> (n, k).
+    """Compute ``cubic_terms(points) @ coefficients`` but for rounding, shape (n, f) and (t, k) -> (n, k).
 
     Nested as by Horner, it takes a multiplication per term and point, and none of the terms is stored. A value does not
     depend on the other points.

@@ -1,19 +1,20 @@
-"""Search coordinates: what an algorithm sees of a design, and the way back.
+"""Turn designs into search coordinates, which are what an algorithm sees of them, and back.
 
 A gear ratio only selects a gearbox, so a study with ``gear_list`` searches the list of gearboxes by position and stores
 the real ratio of the chosen one. All other free variables are coordinates as they are.
 
-Search coordinates of a study that chooses from several motors: one more coordinate per choice, without an order.
+Give each choice of a study between several motors a search coordinate, whose values have no order.
 
 A study chooses the motor of both joints, or that of the hip and that of the knee. Each motor has its own list of
 gearboxes, of its own length. A free gear ratio is therefore a share of the list of its joint's motor, from 0, its
 lowest ratio, to 1, its highest: when the motor changes, a low ratio stays a low one.
 
-Variation of a choice that has no order: a child takes its parents' choice, a mutation takes any other one.
+Vary a choice that has no order: a child takes its parents' choice, a mutation takes any other one.
 
 Operators for numbers would draw a motor between two motors, or prefer the neighbours in the list.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -32,14 +33,55 @@ from pareto_monoped.design import NAMES, RATIOS
 from pareto_monoped.errors import StudyError
 from pareto_monoped.search.algorithm import MOTOR_OF, Floats, Gear, MotorChoice, MotorKind, Space
 
+Motors = Mapping[str, tuple[str, ...]]
+"""Coordinate that chooses a motor -> name of each design's; empty where a study has no such choice."""
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Coordinates:
-    """Free variables of a study and the gearboxes that they choose from."""
+
+class Coordinates(ABC):
+    """Base class of the coordinates of a study: ``KitCoordinates``, and ``motor_choice.MotorCoordinates``."""
 
     study: Study  #: the definition
+
+    @property
+    @abstractmethod
+    def space(self) -> Space:
+        """The space that an algorithm searches."""
+
+    @abstractmethod
+    def designs(self, values: Floats) -> Floats:
+        """Return designs, shape (n, number of variables), for coordinates, shape (n, d)."""
+
+    @abstractmethod
+    def values(self, designs: Floats, motors: Motors | None = None) -> Floats:
+        """Return coordinates, shape (n, d), for designs, shape (n, number of variables), and their motors."""
+
+    @abstractmethod
+    def motors_of(self, values: Floats) -> Motors:
+        """Return the names of each design's motors for coordinates, shape (n, d)."""
+
+    @abstractmethod
+    def kits(self, motors: Motors) -> NDArray[np.intp] | None:
+        """Return the positions of n designs' kits of motors in ``Study.kits``, shape (n,); None for the only kit."""
+
+    @abstractmethod
+    def limits(self, name: str) -> tuple[float, float]:
+        """Return the least and the greatest value of a free variable in a stored design, whatever its motors."""
+
+    def motor_limits(self, name: str) -> tuple[str, dict[str, tuple[float, float]]] | None:
+        """Find which choice decides a variable's gearboxes, and their least and greatest ratio with each motor.
+
+        None for a variable whose limits are the same with every motor.
+        """
+        return None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KitCoordinates(Coordinates):
+    """Free variables of a study with one kit of motors, and the gearboxes that they choose from."""
+
+    study: Study
     fixed: Floats  #: a design with the fixed variables at their values, shape (number of variables,)
-    #: For each free gear ratio that is searched as a list, its gearboxes by ascending real ratio
+    #: for each free gear ratio that is searched as a list, its gearboxes by ascending real ratio
     gears: Mapping[str, tuple[Gear, ...]] = field(default_factory=dict)
 
     @property
@@ -57,7 +99,7 @@ class Coordinates:
         )
 
     def designs(self, values: Floats) -> Floats:
-        """Designs, shape (n, number of variables), from coordinates, shape (n, d)."""
+        """Return designs, shape (n, number of variables), for coordinates, shape (n, d)."""
         designs = np.tile(self.fixed, (len(values), 1))
         designs[:, self._free] = values
         for name, ratios in self._ratios.items():
@@ -65,16 +107,23 @@ class Coordinates:
             column[:] = ratios[column.astype(np.intp)]
         return designs
 
-    def values(self, designs: Floats) -> Floats:
-        """Coordinates, shape (n, d), of designs, shape (n, number of variables); a ratio means the nearest gearbox."""
+    def values(self, designs: Floats, motors: Motors | None = None) -> Floats:
+        """Return coordinates, shape (n, d), for designs; a ratio means the nearest gearbox."""
         values = np.array(designs, dtype=np.float64)
         for name, ratios in self._ratios.items():
             column = values[:, NAMES.index(name)]
             column[:] = np.abs(column[:, None] - ratios).argmin(axis=1)
         return values[:, self._free]
 
+    def motors_of(self, values: Floats) -> Motors:
+        """Return nothing: there is no choice."""
+        return {}
+
+    def kits(self, motors: Motors) -> None:
+        """Return None: all designs have the same kit."""
+
     def limits(self, name: str) -> tuple[float, float]:
-        """Least and greatest value of a free variable in a stored design."""
+        """Return the least and the greatest value of a free variable in a stored design."""
         if name in self.gears:
             return self.gears[name][0].ratio, self.gears[name][-1].ratio
         bounds = self.study.variables[name]
@@ -90,8 +139,8 @@ class Coordinates:
         return {name: np.array([gear.ratio for gear in gears]) for name, gears in self.gears.items()}
 
 
-def coordinates_of(study: Study, maps: Maps) -> Coordinates:
-    """The coordinates of a study with its motor, or with one of hip and one of knee.
+def coordinates_of(study: Study, maps: Maps) -> KitCoordinates:
+    """Make the coordinates of a study with one motor, or with one for the hip and one for the knee.
 
     Raises:
         StudyError: no gearbox has a ratio within the bounds of a free gear ratio.
@@ -110,16 +159,16 @@ def coordinates_of(study: Study, maps: Maps) -> Coordinates:
                 )
         elif actuator_map.interval_index([value])[0] >= 0:
             fixed[NAMES.index(name)] = actuator_map.lookup(value).ratio
-    return Coordinates(study=study, fixed=fixed, gears=gears)
+    return KitCoordinates(study=study, fixed=fixed, gears=gears)
 
 
-def plain_coordinates(study: Study) -> Coordinates:
-    """Coordinates of a study that searches ratios: every free variable within its bounds."""
-    return Coordinates(study=study, fixed=study.lower)
+def plain_coordinates(study: Study) -> KitCoordinates:
+    """Make the coordinates of a study that searches ratios: every free variable within its bounds."""
+    return KitCoordinates(study=study, fixed=study.lower)
 
 
 def gear_list(actuator_map: ActuatorMap, bounds: Bounds) -> tuple[Gear, ...]:
-    """The gearboxes that ratios within the bounds, both included, lead to; by ascending real ratio.
+    """List the gearboxes that ratios within the bounds, both included, lead to; by ascending real ratio.
 
     An interval of the map counts if the bounds touch it, so that 8.7 as the upper bound includes the gearbox of
     [8.7, 8.8), whose real ratio may be a little more. Where all intervals within the bounds are empty, there is none:
@@ -145,14 +194,14 @@ def _gear(actuator: Actuator) -> Gear:
 
 
 @dataclass(frozen=True, kw_only=True)  # without slots: the cached property needs a place to keep its value
-class MotorCoordinates:
+class MotorCoordinates(Coordinates):
     """Free variables and the motors that a study chooses from."""
 
-    study: Study  #: the definition
-    #: The gearboxes of each kit of motors: of each motor that both joints may have, or of each pair of hip and knee; in
+    study: Study
+    #: the gearboxes of each kit of motors: of each motor that both joints may have, or of each pair of hip and knee; in
     #: the order of ``Study.kits``
     maps: tuple[JointMaps, ...]
-    parts: tuple[Coordinates, ...]  #: coordinates of the same study with each kit alone
+    parts: tuple[KitCoordinates, ...]  #: coordinates of the same study with each kit alone
 
     @cached_property
     def choices(self) -> Mapping[str, tuple[str, ...]]:
@@ -194,7 +243,7 @@ class MotorCoordinates:
         return MotorChoice(name=name, motors=tuple(kinds[motor] for motor in self.choices[name]))
 
     def designs(self, values: Floats) -> Floats:
-        """Designs, shape (n, number of variables), from coordinates, shape (n, d)."""
+        """Return designs, shape (n, number of variables), for coordinates, shape (n, d)."""
         space, kits = self.space, self.kits_of(values)
         positions = np.array(values[:, : len(space.names) - len(space.choices)])
         for name in space.listed:
@@ -205,22 +254,23 @@ class MotorCoordinates:
         return designs
 
     def kits_of(self, values: Floats) -> NDArray[np.intp]:
-        """Which of ``maps`` each design has, from coordinates, shape (n, d) -> (n,)."""
+        """Return which of ``maps`` each design has, from coordinates, shape (n, d) -> (n,)."""
         picked = [self.space.picked(choice, values) for choice in self.space.choices]
         return np.ravel_multi_index(picked, [len(choice.motors) for choice in self.space.choices])
 
-    def kits(self, motors: Mapping[str, Sequence[str]]) -> NDArray[np.intp]:
-        """Which of ``maps`` each design has, from the names of the motors of each choice."""
+    def kits(self, motors: Motors) -> NDArray[np.intp]:
+        """Return which of ``maps`` each design has, from the names of the motors of each choice."""
         picked = [np.array([names.index(one) for one in motors[name]], int) for name, names in self.choices.items()]
         return np.ravel_multi_index(picked, [len(names) for names in self.choices.values()])
 
-    def motors_of(self, values: Floats) -> dict[str, tuple[str, ...]]:
-        """Names of each design's motors, of each choice, from coordinates, shape (n, d)."""
+    def motors_of(self, values: Floats) -> Motors:
+        """Return the names of each design's motors for coordinates, shape (n, d)."""
         picked = {choice.name: self.space.picked(choice, values) for choice in self.space.choices}
         return {name: tuple(self.choices[name][k] for k in rows.tolist()) for name, rows in picked.items()}
 
-    def values(self, designs: Floats, motors: Mapping[str, Sequence[str]]) -> Floats:
-        """Coordinates, shape (n, d), of designs, shape (n, number of variables), and the names of their motors."""
+    def values(self, designs: Floats, motors: Motors | None = None) -> Floats:
+        """Return coordinates, shape (n, d), for designs, shape (n, number of variables), and their motors."""
+        motors = motors or {}
         space, chosen = self.space, self.kits(motors)
         values = np.empty((len(designs), len(space.names)))
         for place, (name, names) in zip(space.choice_columns, self.choices.items(), strict=True):
@@ -234,10 +284,7 @@ class MotorCoordinates:
         return values
 
     def motor_limits(self, name: str) -> tuple[str, dict[str, tuple[float, float]]] | None:
-        """Which choice decides the gearboxes of a variable, and their least and greatest ratio with each motor.
-
-        None for a variable whose limits are the same with every motor.
-        """
+        """Find which choice decides a variable's gearboxes, and their least and greatest ratio with each motor."""
         if name not in self.space.listed:
             return None
         choice = self.space.choice_for(name)
@@ -245,17 +292,13 @@ class MotorCoordinates:
         return choice.name, {motor: (found[0], found[-1]) for motor, found in ratios.items()}
 
     def limits(self, name: str) -> tuple[float, float]:
-        """Least and greatest value of a free variable in a stored design, whatever its motors."""
+        """Return the least and the greatest value of a free variable in a stored design, whatever its motors."""
         lows, highs = zip(*(part.limits(name) for part in self.parts), strict=True)
         return min(lows), max(highs)
 
 
-AnyCoordinates = Coordinates | MotorCoordinates
-"""Coordinates of a study with one kit of motors or with several."""
-
-
-def searched_coordinates(study: Study, maps: Sequence[Maps]) -> AnyCoordinates:
-    """The coordinates of a study, with the maps of each of its kits of motors (``Study.kits``).
+def searched_coordinates(study: Study, maps: Sequence[Maps]) -> Coordinates:
+    """Make the coordinates of a study, with the maps of each of its kits of motors (``Study.kits``).
 
     Raises:
         StudyError: a motor has no gearbox with a ratio within the bounds of a free gear ratio.
@@ -266,11 +309,11 @@ def searched_coordinates(study: Study, maps: Sequence[Maps]) -> AnyCoordinates:
 
 
 def kit_maps(study: Study, maps: Sequence[ActuatorMap]) -> tuple[JointMaps, ...]:
-    """The gearboxes of each kit of motors.
+    """Return the gearboxes of each kit of motors.
 
     Args:
         study: the definition.
-        maps: of each of ``Study.motors``.
+        maps: the gearboxes of each of ``Study.motors``.
     """
     of = dict(zip(study.motors, maps, strict=True))
     return tuple(JointMaps(hip=of[hip], knee=of[knee]) for hip, knee in study.kits)
@@ -281,20 +324,20 @@ _EXCHANGED = 0.5
 
 
 def exchanged(parents: Floats, generator: np.random.Generator) -> Floats:
-    """Choices of two children for each pair of parents, shape (2, n) -> (2, n)."""
+    """Return the choices of two children for each pair of parents, shape (2, n) -> (2, n)."""
     swap = generator.random(parents.shape[1]) < _EXCHANGED
     return np.where(swap, parents[::-1], parents)
 
 
 def mutated(choices: Floats, count: int, probability: float, generator: np.random.Generator) -> Floats:
-    """Choices from 0 to ``count`` - 1, shape (n,); with some probability each becomes one of the others."""
+    """Return choices from 0 to ``count`` - 1, shape (n,); with some probability each becomes one of the others."""
     changes = generator.random(len(choices)) < probability
     others = (choices + generator.integers(1, count, len(choices))) % count
     return np.where(changes, others, choices)
 
 
 class MotorSBX(SBX):  # type: ignore[misc]  # pymoo has no types
-    """Simulated binary crossover of the numbers, exchange of the motors."""
+    """Crosses numbers by simulated binary crossover, and exchanges motors."""
 
     def __init__(self, space: Space, **settings: float) -> None:
         super().__init__(**settings)
@@ -310,7 +353,7 @@ class MotorSBX(SBX):  # type: ignore[misc]  # pymoo has no types
 
 
 class MotorPM(PM):  # type: ignore[misc]  # pymoo has no types
-    """Polynomial mutation of the numbers, another motor with the same probability."""
+    """Mutates numbers by polynomial mutation, and takes another motor with the same probability."""
 
     def __init__(self, space: Space, **settings: float) -> None:
         super().__init__(**settings)

@@ -1,4 +1,4 @@
-"""The paper's search: CMA-ES on a weighted cost of two objectives, one run per weight.
+"""Search as the paper does: by CMA-ES on a weighted cost of two objectives, one run per weight.
 
 The cost that the weighted search minimises: the paper's for height and energy, a normalised sum for other pairs.
 """
@@ -13,7 +13,7 @@ import numpy as np
 from pareto_monoped.definition.algorithms import WeightedSettings
 from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
-from pareto_monoped.search.algorithm import Floats, Proposal, Scores, Space
+from pareto_monoped.search.algorithm import Algorithm, Floats, Proposal, Scores, Space
 
 
 def weighted_cost(values: Floats, weight: float, corner: ReferencePoint, height_scale_j: float) -> Floats:
@@ -37,13 +37,12 @@ def weighted_cost(values: Floats, weight: float, corner: ReferencePoint, height_
     return cost
 
 
-class WeightedSearch:
-    """CMA-ES (Hansen's ``cma``) on ``weighted_cost``.
+class WeightedSearch(Algorithm):
+    """Runs CMA-ES (Hansen's ``cma``) on ``weighted_cost``, for one weight after the other.
 
-    The runs follow one another. A run
-    ends after ``iterations``, or earlier when CMA-ES detects that it has converged. To restore, the current run is
-    replayed from its history. This is exact because each run has its own random generator, and it takes a fraction of
-    a second.
+    A run ends after ``iterations``, or earlier when CMA-ES detects that it has converged. To restore, the current run
+    is replayed from its history. This is exact because each run has its own random generator, and it takes a fraction
+    of a second.
     """
 
     def __init__(
@@ -55,7 +54,7 @@ class WeightedSearch:
             space: the free variables and two objectives.
             settings: weights, population and the like.
             start: where each run starts, a point of the space, shape (d,).
-            seed: of the study.
+            seed: the study's.
             corner: the study's reference point, which scales other objectives than the paper's.
         """
         self._space = space
@@ -70,7 +69,7 @@ class WeightedSearch:
         self._asked: list[Floats] = []
 
     def ask(self) -> Proposal | None:
-        """The next designs of the current run; None after the last run."""
+        """Return the next designs of the current run; None after the last run."""
         if self._run == len(self._settings.height_weights):
             return None
         self._asked = self._strategy.ask()
@@ -92,7 +91,7 @@ class WeightedSearch:
                 self._strategy = self._fresh()
 
     def cost(self, scores: Scores) -> Floats:
-        """Cost of each design, shape (n,).
+        """Compute the cost of each design, shape (n,).
 
         An infeasible design costs more than any feasible one, and more the larger its violation. CMA-ES uses only the
         ranks.
@@ -102,7 +101,7 @@ class WeightedSearch:
         return np.where(scores.violation > 0.0, 1e6 * scale * (1.0 + scores.violation), feasible)
 
     def state(self) -> dict[str, Any]:
-        """Number of the current run and of its iterations; the designs and scores are in the database."""
+        """Return the numbers of the current run and of its iterations; designs and scores are in the database."""
         return {"run": self._run, "iteration": self._iteration}
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:

@@ -15,7 +15,7 @@ import optuna
 from pareto_monoped.definition.study import Study
 from pareto_monoped.design import NAMES
 from pareto_monoped.search.scoring import values_of
-from pareto_monoped.search.space import AnyCoordinates
+from pareto_monoped.search.space import Coordinates
 from pareto_monoped.storage.columns import Generation
 from pareto_monoped.storage.connection import Connection
 from pareto_monoped.storage.database import READ_TIMEOUT_S
@@ -161,7 +161,7 @@ def _optuna_storage(path: StudyPlace) -> Any:
 class OptunaTables:
     """Writes trials into an existing study: directly if the schema is known, otherwise by Optuna's public call."""
 
-    def __init__(self, path: StudyPlace, study_id: int, coordinates: AnyCoordinates) -> None:
+    def __init__(self, path: StudyPlace, study_id: int, coordinates: Coordinates) -> None:
         study = coordinates.study
         self._path = path
         self._study_id = study_id

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from pareto_monoped.actuator.motor import Motor
     from pareto_monoped.actuator.ratiomap import ActuatorMap, JointMaps
     from pareto_monoped.jump.calibration import Calibration
-    from pareto_monoped.search.space import AnyCoordinates
+    from pareto_monoped.search.space import Coordinates
 
 _DTYPES = {column.name: column.dtype for column in COLUMNS}
 
@@ -241,7 +241,7 @@ class StudyData:
         return np.array([known[pair] for pair in zip(trials[hip], trials[knee], strict=True)], dtype=np.intp)
 
     @cached_property
-    def coordinates(self) -> "AnyCoordinates":
+    def coordinates(self) -> "Coordinates":
         """What the study searches."""
         from pareto_monoped.search.space import plain_coordinates, searched_coordinates
 

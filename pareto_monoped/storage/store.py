@@ -16,7 +16,7 @@ import numpy as np
 from pareto_monoped.definition.study import Study
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.files import temporary_beside
-from pareto_monoped.search.space import AnyCoordinates, plain_coordinates
+from pareto_monoped.search.space import Coordinates, plain_coordinates
 from pareto_monoped.storage.arrival import settle
 from pareto_monoped.storage.columns import LATER, Generation, columns_of
 from pareto_monoped.storage.connection import Connection, FileConnection
@@ -120,7 +120,7 @@ class Store:
         path: StudyPlace,
         study: Study,
         *,
-        coordinates: AnyCoordinates | None = None,
+        coordinates: Coordinates | None = None,
         known_schemas: Sequence[str] = KNOWN_SCHEMAS,
         lock: "Lock | ServerLock | None" = None,
     ) -> None:
@@ -148,7 +148,7 @@ class Store:
                 self._place.close()
                 raise
 
-    def _open(self, coordinates: AnyCoordinates, known_schemas: Sequence[str]) -> None:
+    def _open(self, coordinates: Coordinates, known_schemas: Sequence[str]) -> None:
         connection = self._connection
         version = check(connection, self.path)
         self._place.examine()

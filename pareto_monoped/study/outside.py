@@ -18,7 +18,6 @@ from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.search.algorithm import Floats, Space
 from pareto_monoped.search.scoring import FAILED_VIOLATION, judge, scores
-from pareto_monoped.search.space import MotorCoordinates
 from pareto_monoped.study.own_functions import Jumps, OwnFunction, called, listed, name_of
 from pareto_monoped.study.simulator import evaluation_of, load_simulator
 
@@ -99,10 +98,7 @@ class JumpFunction:
         points = self.space.snap(np.atleast_2d(np.asarray(values, dtype=np.float64)))
         where = self._coordinates
         designs = where.designs(points)
-        if isinstance(where, MotorCoordinates):
-            evaluations = self._evaluate(designs, where.kits(where.motors_of(points)))
-        else:
-            evaluations = self._evaluate(designs)
+        evaluations = self._evaluate(designs, where.kits(where.motors_of(points)))
         judgement = judge(evaluations, self._study.constraints, self._study.objectives)
         known = scores(evaluations, judgement, self._study.objectives)
         table = Jumps(dict(zip(NAMES, designs.T, strict=True)) | evaluations.as_columns())

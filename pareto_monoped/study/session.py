@@ -1,4 +1,4 @@
-"""One session of a study: ask, simulate, tell, store. Only this module knows algorithm, simulator and storage."""
+"""Run one session of a study: ask, simulate, tell, store. Only this module knows algorithm, simulator and storage."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -13,23 +13,18 @@ from numpy.typing import NDArray
 
 from pareto_monoped.definition.study import Study
 from pareto_monoped.design import NAMES
-from pareto_monoped.errors import DatabaseError, StudyError
-from pareto_monoped.jump.evaluate import Evaluations
+from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import AtHeight, GrowingFront, best_at_height
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.search.algorithm import Algorithm, Scores
-from pareto_monoped.search.own_algorithm import OwnAlgorithm, same_designs
 from pareto_monoped.search.registry import make_algorithm
 from pareto_monoped.search.scoring import judge, missed, scores, values_of
-from pareto_monoped.search.space import AnyCoordinates, MotorCoordinates, plain_coordinates
+from pareto_monoped.search.space import Coordinates, Motors, plain_coordinates
 from pareto_monoped.storage.columns import Generation
 from pareto_monoped.storage.reader import StudyData
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.interrupt import Interrupt
 from pareto_monoped.study.simulator import Evaluate
-
-Motors = dict[str, tuple[str, ...]]
-"""Coordinate that chooses a motor -> name of each design's."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +52,7 @@ class Session:
         store: Store,
         budget: int,
         progress: Callable[[Progress], object],
-        coordinates: AnyCoordinates | None = None,
+        coordinates: Coordinates | None = None,
         own_algorithm: Any = None,
     ) -> None:
         self._study = study
@@ -132,21 +127,16 @@ class Session:
         if proposal is None:
             return None
         designs = self._coordinates.designs(proposal.values)
-        motors = self._motors_of(proposal.values)
+        motors = self._coordinates.motors_of(proposal.values)
         there = len(self._designs)
-        own = isinstance(self._algorithm, OwnAlgorithm)
-        same = (same_designs if own else np.array_equal)(designs[:there], self._designs)
+        same = self._algorithm.same_designs(designs[:there], self._designs)
         if not same or _first(motors, there) != self._motors:
-            if isinstance(self._algorithm, OwnAlgorithm):
-                raise StudyError(self._algorithm.other_designs(f"trials {self.total - there} to {self.total - 1}"))
-            raise DatabaseError(
-                f"study database {str(self._store.path)!r}: trials {self.total - there} to {self.total - 1} do not "
-                "follow from its checkpoint; it is damaged, restore a copy"
-            )
+            trials = f"trials {self.total - there} to {self.total - 1}"
+            raise self._algorithm.other_designs(trials, f"study database {str(self._store.path)!r}")
         missing = designs[there : there + self._budget - self.total]
         their_motors = {name: names[there : there + len(missing)] for name, names in motors.items()}
         started = datetime.now(UTC)
-        evaluations = self._evaluated(missing, their_motors)
+        evaluations = self._evaluate(missing, self._coordinates.kits(their_motors))
         objectives = self._study.objectives
         judgement = judge(evaluations, self._study.constraints, objectives)
         self._designs, self._motors = np.vstack((self._designs, missing)), _first(motors, there + len(missing))
@@ -182,17 +172,6 @@ class Session:
             motors=their_motors,
         )
 
-    def _motors_of(self, values: NDArray[np.float64]) -> Motors:
-        """Names of the designs' motors; empty where the study has no choice of them."""
-        where = self._coordinates
-        return where.motors_of(values) if isinstance(where, MotorCoordinates) else {}
-
-    def _evaluated(self, designs: NDArray[np.float64], motors: Motors) -> Evaluations:
-        where = self._coordinates
-        if not isinstance(where, MotorCoordinates):
-            return self._evaluate(designs)
-        return self._evaluate(designs, where.kits(motors))
-
     def _present(self) -> Progress:
         rate = (self.total - self._before) / max(self.elapsed, 1e-9)
         return Progress(
@@ -220,7 +199,7 @@ def _first(motors: Motors, count: int) -> Motors:
 
 
 def _rows(data: StudyData, first: int, end: int) -> tuple[NDArray[np.float64], Motors, Scores]:
-    """Designs, names of their motors where the study has a choice, and scores."""
+    """Return designs, names of their motors where the study has a choice, and scores."""
     rows, study = data.trials.iloc[first:end], data.study
     motors = {name: tuple(rows[name]) for name in study.motor_choices}
     measures = {limit.measure: rows[limit.measure].to_numpy() for limit in study.constraints.limits}
@@ -233,21 +212,18 @@ def _rows(data: StudyData, first: int, end: int) -> tuple[NDArray[np.float64], M
     return rows[list(NAMES)].to_numpy(dtype=np.float64), motors, known
 
 
-def _history(data: StudyData, coordinates: AnyCoordinates) -> Iterator[tuple[NDArray[np.float64], Scores]]:
-    """Coordinates and scores of every complete generation, in order."""
+def _history(data: StudyData, coordinates: Coordinates) -> Iterator[tuple[NDArray[np.float64], Scores]]:
+    """Yield coordinates and scores of every complete generation, in order."""
     numbers = data.trials["generation"].to_numpy()[: data.checkpoint.evaluations]
     edges = [0, *(np.flatnonzero(np.diff(numbers)) + 1).tolist(), data.checkpoint.evaluations]
     for first, end in pairwise(edges):
         if first < end:
             designs, motors, known = _rows(data, first, end)
-            if isinstance(coordinates, MotorCoordinates):
-                yield coordinates.values(designs, motors), known
-            else:
-                yield coordinates.values(designs), known
+            yield coordinates.values(designs, motors), known
 
 
 def _joined(before: Scores, new: Scores | None) -> Scores:
-    """Both, one after the other; empty scores if ``new`` is None."""
+    """Join both, one after the other; empty scores if ``new`` is None."""
     if new is None:
         return before.of(slice(0))
     return Scores(

@@ -19,14 +19,14 @@ from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.shared import evaluator_of
 from pareto_monoped.leg.thigh_outline import require_leg
-from pareto_monoped.search.space import AnyCoordinates, kit_maps, searched_coordinates
+from pareto_monoped.search.space import Coordinates, kit_maps, searched_coordinates
 from pareto_monoped.storage.meta import motor_keys
 from pareto_monoped.storage.reader import StudyData
 from pareto_monoped.uncertainty.samples import RobustEvaluator
 
 Evaluate = Callable[..., Evaluations]
-"""Designs, see ``design.complete``, to their evaluations, in order; the designs are followed by the positions of their
-kits of motors where a study has several."""
+"""Designs, see ``design.complete``, and the positions of their kits of motors, None for the only one, to their
+evaluations, in order."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,7 +46,7 @@ class Simulator:
         motors = zip(motor_keys(len(self.motors)), map(motor_values, self.motors), strict=True)
         return {**dict(motors), "calibration": calibration_values(self.calibration)}
 
-    def coordinates(self, study: Study) -> AnyCoordinates:
+    def coordinates(self, study: Study) -> Coordinates:
         """What an algorithm searches in ``study``: lists of these motors' gearboxes where the study has them."""
         return searched_coordinates(study, self.evaluator.actuator_maps)
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pareto_monoped.measures import measure
-from pareto_monoped.pareto.indicators import epsilon, hypervolume, igd_plus, reference_point
+from pareto_monoped.pareto.indicators import hypervolume, reference_point
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 
 REFERENCE = reference_point(HEIGHT_AND_ENERGY, {"height_m": 0.5, "energy_j": 10.0})
@@ -45,31 +45,6 @@ def test_one_more_point_never_shrinks_the_hypervolume(given_points, height_m, en
     assert hypervolume(after, REFERENCE) >= hypervolume(before, REFERENCE) - 1e-12
 
 
-FRONT = np.array([[0.6, 2.0], [0.8, 4.0], [1.0, 6.0]])
-
-
-def test_a_front_is_no_distance_from_itself():
-    assert epsilon(FRONT, FRONT) == pytest.approx(0.0, abs=1e-15)
-    assert igd_plus(FRONT, FRONT) == pytest.approx(0.0, abs=1e-15)
-
-
-def test_a_front_shifted_by_a_share_of_the_extent_is_that_share_away():
-    # Extent 0.4 m and 4 J: a tenth of it lower, no more energy.
-    shifted = FRONT - np.array([0.04, 0.0])
-    assert epsilon(shifted, FRONT) == pytest.approx(0.1, rel=1e-12)
-    assert igd_plus(shifted, FRONT) == pytest.approx(0.1, rel=1e-12)
-
-
-def test_a_dominating_front_is_better_than_none_away():
-    better = FRONT + np.array([0.04, -0.4])
-    assert epsilon(better, FRONT) == pytest.approx(-0.1, rel=1e-12)
-    assert igd_plus(better, FRONT) == 0.0
-
-
-def test_a_single_reference_point_is_measured_in_metres_and_joules():
-    assert epsilon(np.array([[0.7, 2.0]]), np.array([[0.8, 2.0]])) == pytest.approx(0.1, rel=1e-12)
-
-
 THREE = Objectives(names=("height_m", "electrical_energy_j", "mass_kg"))
 CORNER = reference_point(THREE, {"height_m": 0.5, "electrical_energy_j": 10.0, "mass_kg": 5.0})
 
@@ -98,23 +73,6 @@ def test_hypervolume_of_three_objectives_is_the_sum_of_its_cells(designs):
 
 def test_hypervolume_of_one_design_is_a_box():
     assert hypervolume(np.array([[0.8, 4.0, 3.0]]), CORNER) == pytest.approx(0.3 * 6.0 * 2.0, rel=1e-14)
-
-
-cubes = st.lists(st.tuples(*(st.floats(0.1, 9.0),) * 3), min_size=2, max_size=6)
-
-
-@given(cubes, cubes)
-def test_epsilon_and_igd_plus_of_three_objectives_are_their_definitions(points, front):
-    less, wanted = (np.array(p) * [-1.0, 1.0, 1.0] for p in (points, front))
-    extent = np.ptp(wanted, axis=0)
-    extent[extent == 0.0] = 1.0
-    shift, distances = -np.inf, []
-    for target in wanted:
-        gaps = (less - target) / extent
-        shift = max(shift, gaps.max(axis=1).min())
-        distances.append(np.sqrt((np.maximum(gaps, 0.0) ** 2).sum(axis=1)).min())
-    assert epsilon(np.array(points), np.array(front), THREE) == pytest.approx(shift, rel=1e-9, abs=1e-9)
-    assert igd_plus(np.array(points), np.array(front), THREE) == pytest.approx(np.mean(distances), rel=1e-9, abs=1e-9)
 
 
 def test_a_corner_takes_what_is_not_given_from_the_table_of_measures():

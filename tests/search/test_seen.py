@@ -3,7 +3,6 @@
 import tracemalloc
 
 import numpy as np
-import pytest
 
 from pareto_monoped.search import seen as module
 from pareto_monoped.search.seen import Seen
@@ -19,10 +18,8 @@ def slow(before, values):
     return fresh
 
 
-@pytest.mark.parametrize("least_places", [1, 64, 4096])
-def test_as_a_set_of_rows(monkeypatch, least_places):
-    """Drawn from few values, so that many are equal; added in parts, to tables that grow and one that need not."""
-    monkeypatch.setattr(module, "_LEAST_PLACES", least_places)
+def test_as_a_set_of_rows():
+    """Drawn from few values, so that many are equal; added in parts."""
     generator, seen, added = np.random.default_rng(1), Seen(), np.zeros((0, 3))
     for _ in range(20):
         part = generator.integers(-3, 4, (30, 3)) / 2.0
@@ -45,8 +42,8 @@ def test_designs_on_a_grid_have_different_digests():
     assert len(np.unique(module._digests(grid))) == len(grid) == 64**3
 
 
-def test_a_digest_is_that_of_the_finaliser_and_never_that_of_a_free_place():
-    """Against Python's whole numbers; the digest of zeros alone would be 0."""
+def test_a_digest_is_that_of_the_finaliser():
+    """Against Python's whole numbers; the digest of zeros alone is 0."""
 
     def mixed(word):
         for multiplier in (0xFF51AFD7ED558CCD, 0xC4CEB9FE1A85EC53):
@@ -58,13 +55,13 @@ def test_a_digest_is_that_of_the_finaliser_and_never_that_of_a_free_place():
         expected = 0
         for word in row.view(np.uint64).tolist():
             expected = mixed((expected + mixed(word)) % 2**64)
-        assert digest == max(expected, 1)
+        assert digest == expected
     seen = Seen()
     assert seen.new(values[[0, 0, 1]]).tolist() == [True, False, True]
 
 
 def test_a_long_search_needs_little_memory():
-    """Eight bytes per place of a table that is a quarter to half full."""
+    """Eight bytes per design, and at most as many again while some are added."""
     generator = np.random.default_rng(2)
     tracemalloc.start()
     try:
