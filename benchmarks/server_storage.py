@@ -11,6 +11,7 @@ import argparse
 import tempfile
 import time
 from collections.abc import Callable, Sequence
+from contextlib import closing
 from datetime import UTC, datetime
 from pathlib import Path
 from statistics import median
@@ -25,12 +26,10 @@ from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.search.registry import make_algorithm
 from pareto_monoped.search.scoring import judge
 from pareto_monoped.storage.columns import Generation
-from pareto_monoped.storage.database import reading
 from pareto_monoped.storage.front_reader import read_front
 from pareto_monoped.storage.meta import StudyMeta
-from pareto_monoped.storage.place import StudyPlace, place_of
+from pareto_monoped.storage.place import Server, StudyPlace, place_of, storage_of
 from pareto_monoped.storage.reader import read_study
-from pareto_monoped.storage.server.address import Server
 from pareto_monoped.storage.status import read_summary
 from pareto_monoped.storage.store import Store, create_database
 
@@ -81,9 +80,10 @@ def meta(study: Study) -> StudyMeta:
 
 def rows(place: StudyPlace) -> list[Any]:
     """All trials and the chain of the running hash."""
-    with reading(place) as connection:
-        trials = connection.execute("SELECT * FROM monoped_trials ORDER BY trial").fetchall()
-        return trials + connection.execute("SELECT link, hash FROM monoped_seals ORDER BY link").fetchall()
+    with storage_of(place).reading() as connection:
+        trials: list[Any] = connection.execute("SELECT * FROM monoped_trials ORDER BY trial").fetchall()
+        trials += connection.execute("SELECT link, hash FROM monoped_seals ORDER BY link").fetchall()
+        return trials
 
 
 def timed(act: Callable[..., Any], *arguments: Any) -> float:
@@ -130,16 +130,16 @@ def main() -> None:
     parser.add_argument("--generations", type=int, default=40)
     given = parser.parse_args()
     server = place_of(given.address)
-    if not isinstance(server, Server):
+    if isinstance(server, Path):
         raise SystemExit("give the address of a server")
-    from pareto_monoped.storage.server.connection import opened
+    from pareto_monoped.storage.server import ServerConnection
 
     server = server.of_schema(SCHEMA)
     try:
         with tempfile.TemporaryDirectory() as folder:
             compare(Path(folder) / "s.db", server, given.size, given.generations)
     finally:
-        with opened(server) as session:
+        with closing(ServerConnection(server)) as session:
             session.execute(f"DROP SCHEMA IF EXISTS {SCHEMA} CASCADE")
 
 

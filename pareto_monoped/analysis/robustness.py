@@ -21,9 +21,8 @@ from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.measures import MEASURES, STATISTICS
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.storage.extra_rows import ROBUSTNESS, Stored, read_robustness
-from pareto_monoped.storage.lock import locked
 from pareto_monoped.storage.meta import strict_json
-from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.simulator import stored_simulator
@@ -74,7 +73,7 @@ def robust(
     if samples < LEAST_SAMPLES:
         raise InputError(complaint("samples", samples, f"a power of two of at least {LEAST_SAMPLES}", "give more"))
     drawn = sobol_samples(uncertainty, samples, seed)
-    with locked(db):
+    with storage_of(db).locked():
         data = read_study(db)
         rows = _chosen(data, trials)
         settings = {"uncertainty": uncertainty.as_dict(), "samples": samples, "seed": seed}

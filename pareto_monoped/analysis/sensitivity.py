@@ -16,9 +16,8 @@ from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.measures import ENERGIES, nominal
 from pareto_monoped.search.space import gear_list
 from pareto_monoped.storage.extra_rows import SENSITIVITY, key_of, read_sensitivity
-from pareto_monoped.storage.lock import locked
 from pareto_monoped.storage.meta import strict_json
-from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.simulator import stored_simulator
@@ -76,7 +75,7 @@ def sensitivity(
     """
     if not 0.0 < within <= 0.5:
         raise InputError(complaint("within", within, "a share above 0 and at most 0.5", "correct it"))
-    with locked(db):
+    with storage_of(db).locked():
         data = read_study(db)
         row = data.trials[(data.trials["trial"] == trial) & (data.trials["status"] == "ok")]
         if len(row) == 0:

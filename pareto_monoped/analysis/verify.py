@@ -15,11 +15,10 @@ from pareto_monoped.errors import DatabaseError
 from pareto_monoped.measures import ENERGIES, MEASURE_NAMES
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.storage.connection import Connection
-from pareto_monoped.storage.database import reading
 from pareto_monoped.storage.extra_rows import read_robustness, read_sensitivity
 from pareto_monoped.storage.kept_front import STATES, KeptFront
 from pareto_monoped.storage.optuna_check import foreign_trials, optuna_findings
-from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.storage.seals import read_seals
 
@@ -99,8 +98,8 @@ def _history_findings(data: StudyData) -> Iterator[str]:
 class Verification:
     """What a check of a study found."""
 
-    trials: int  #: how many it has
-    sealed: bool  #: whether it has a running hash
+    trials: int  #: number of trials of the study
+    sealed: bool  #: whether the study has a running hash
     foreign: tuple[int, ...]  #: Optuna's numbers of trials that are not of this package
     simulated: int  #: how many trials jumped anew
     findings: tuple[str, ...]  #: what is wrong, one line each; none for a sound study
@@ -122,7 +121,7 @@ def verify(db: StudyPlace, *, simulate: int = 0, workers: int = 1, executor: Exe
     data = read_study(db)
     read_robustness(db)
     read_sensitivity(db)
-    with reading(db) as connection:
+    with storage_of(db).reading() as connection:
         seals = read_seals(connection, db) if data.sealed else None
         foreign = foreign_trials(connection, len(data.trials), seals)
         findings = [

@@ -27,8 +27,7 @@ from pareto_monoped.pareto.selectors import (
     Trial,
     Weights,
 )
-from pareto_monoped.storage.place import StudyPlace, place_of
-from pareto_monoped.storage.server.address import Server, is_address
+from pareto_monoped.storage.place import StudyPlace, is_address, place_of
 
 if TYPE_CHECKING:
     from pandas import DataFrame, Series
@@ -294,7 +293,7 @@ def as_place(given: StrPath | StudyPlace, what: str = "path", *, allowed: str = 
     Raises:
         InputError: it is neither.
     """
-    if isinstance(given, Server):
+    if isinstance(given, StudyPlace) and not isinstance(given, Path):
         return given
     return place_of(given) if isinstance(given, str) and is_address(given) else as_path(given, what, allowed=allowed)
 

@@ -13,10 +13,9 @@ from pareto_monoped.definition.study import Study, study_from_dict
 from pareto_monoped.errors import DatabaseError, OutputError, StudyError
 from pareto_monoped.files import unwritable
 from pareto_monoped.pareto.indicators import hypervolume
-from pareto_monoped.storage.arrival import is_vacant
-from pareto_monoped.storage.database import reading
 from pareto_monoped.storage.lock import holder, locked
 from pareto_monoped.storage.meta import StudyMeta, meta_of_rows
+from pareto_monoped.storage.place import storage_of
 from pareto_monoped.storage.status import Summary, read_summary
 
 State = Literal["waiting", "running", "finished", "unfinished", "failed"]
@@ -123,7 +122,7 @@ def stored_state(place: Place) -> Stored:
     budget, unit = place.study.evaluations, place.study.objectives.volume_unit
     nothing = Stored(state="waiting", evaluations=0, budget=budget, hypervolume=0.0, hypervolume_unit=unit)
     try:
-        if is_vacant(place.db):
+        if storage_of(place.db).is_vacant():
             return nothing
         summary = read_summary(place.db)
     except (DatabaseError, OSError) as error:
@@ -170,7 +169,7 @@ def _others(folder: Path, own: Iterable[Path]) -> dict[str, Path]:
 
 def _is_new(db: Path) -> bool:
     try:
-        return is_vacant(db)
+        return storage_of(db).is_vacant()
     except DatabaseError:
         return False
 
@@ -178,9 +177,9 @@ def _is_new(db: Path) -> bool:
 def _meta(db: Path) -> tuple[Study, StudyMeta] | None:
     """Return a stored study's settings; None where none can be read: running it then says why."""
     try:
-        if is_vacant(db):
+        if storage_of(db).is_vacant():
             return None
-        with reading(db) as connection:
+        with storage_of(db).reading() as connection:
             meta = meta_of_rows(connection.execute("SELECT key, value FROM monoped_meta").fetchall(), db)
         return study_from_dict(meta.study, source=f"study database {str(db)!r}"), meta
     except (DatabaseError, StudyError, OSError):

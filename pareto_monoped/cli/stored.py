@@ -122,9 +122,9 @@ def _application(db: StudyPlace) -> Any:
     """The dashboard's WSGI application of a study."""
     from optuna_dashboard import wsgi
 
-    from pareto_monoped.storage.optuna_tables import reading_storage
+    from pareto_monoped.storage.place import storage_of
 
-    return _reading(wsgi(reading_storage(db)))
+    return _reading(wsgi(storage_of(db).optuna_storage(read_only=True)))
 
 
 def _reading(application: Any) -> Any:

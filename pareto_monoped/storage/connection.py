@@ -1,101 +1,100 @@
-"""What the storage of studies asks of a database, and SQLite's way to do it; PostgreSQL's is ``server.connection``.
+"""The base class of connections to a study database, whatever kind of database it is."""
 
-Both take the same SQL, with question marks for values. What they write in different words is a method here.
-"""
-
-import sqlite3
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Any, Protocol
-
-from pareto_monoped.storage.columns import listed
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any, ClassVar, Protocol
 
 
 class Rows(Protocol):
-    """The rows that a query gives."""
-
-    @property
-    def description(self) -> Any:
-        """One entry per column, which begins with its name."""
+    """The rows of a query."""
 
     def fetchone(self) -> Any:
-        """The next row, or None."""
+        """Return the next row, or None."""
 
-    def fetchall(self) -> list[Any]:
-        """All that are left."""
+    def fetchall(self) -> Any:
+        """Return all rows that are left."""
 
     def __iter__(self) -> Iterator[Any]: ...
 
 
-class Connection(Protocol):
-    """A connection to a database, in which every statement outside of a transaction is one of its own."""
+class Connection(ABC):
+    """A connection on which every statement outside of ``transaction`` is a transaction of its own.
+
+    Statements are in the SQL that SQLite and PostgreSQL share; they name their values, such as ``:trial``.
+    """
+
+    _BEGIN: ClassVar[str] = "BEGIN"
 
     @property
+    @abstractmethod
     def in_transaction(self) -> bool:
-        """Whether a transaction is open."""
+        """Whether a transaction is open, an aborted one included."""
 
-    def execute(self, sql: str, parameters: Sequence[Any] = ..., /) -> Rows:
-        """Run a statement."""
+    @abstractmethod
+    def execute(self, sql: str, parameters: Mapping[str, Any] = ..., /) -> Rows:
+        """Run a statement with named values."""
 
-    def executemany(self, sql: str, parameters: Iterable[Sequence[Any]], /) -> object:
-        """Run a statement once per row of values."""
+    @abstractmethod
+    def executemany(self, sql: str, parameters: Iterable[Mapping[str, Any]], /) -> object:
+        """Run a statement once per set of named values."""
 
-    def begin(self) -> None:
-        """Begin a transaction that writes."""
+    @contextmanager
+    def transaction(self) -> Iterator[None]:
+        """Commit what the block writes, or roll it back after an error, also after one of the commit itself."""
+        self.execute(self._BEGIN)
+        try:
+            yield
+            self.execute("COMMIT")
+        finally:
+            if self.in_transaction:
+                self.execute("ROLLBACK")
 
+    def define(self, sql: str) -> None:
+        """Run statements that make or change tables, one after the other; the type REAL has 64 bits."""
+        for statement in sql.split(";"):
+            if statement.strip():
+                self.execute(statement)
+
+    @abstractmethod
     def insert(self, table: str, columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
         """Add rows to a table, with values of these columns; the database fills the others."""
 
+    @abstractmethod
     def replace(self, table: str, rows: Sequence[Sequence[Any]]) -> None:
         """Add whole rows to a table, in place of those with the same key, which is the first column."""
 
+    @abstractmethod
     def objects(self) -> list[tuple[str, str]]:
-        """Kind (such as ``table``, ``view`` or ``trigger``) and name of everything in the database."""
+        """Return kind (such as ``table``, ``view`` or ``trigger``) and name of everything in the database."""
 
+    @abstractmethod
     def columns(self, table: str) -> list[str]:
-        """Names of a table's columns, in its order."""
+        """Return the names of a table's columns in their order."""
 
-    def defects(self) -> Iterator[str]:
-        """What the database itself finds wrong with its pages and indexes, one line each."""
-
+    @abstractmethod
     def trial_ids_after(self, last: int, count: int) -> int:
-        """The first of ``count`` successive keys for Optuna's trials, of which ``last`` is the greatest so far."""
+        """Return the first of ``count`` successive keys for Optuna's trials; ``last`` is the greatest so far."""
 
+    @abstractmethod
     def close(self) -> None:
-        """Close it; an open transaction is rolled back."""
+        """Close the connection; an open transaction is rolled back."""
 
-
-class FileConnection(sqlite3.Connection):
-    """A connection to a file of SQLite; give it to ``sqlite3.connect`` as its factory."""
-
-    def begin(self) -> None:
-        """Begin a transaction that writes."""
-        self.execute("BEGIN IMMEDIATE")
-
-    def insert(self, table: str, columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
-        """Add rows to a table, with values of these columns."""
-        marks = ", ".join("?" * len(columns))
-        self.executemany(f"INSERT INTO {table} ({listed(columns)}) VALUES ({marks})", rows)
-
-    def replace(self, table: str, rows: Sequence[Sequence[Any]]) -> None:
-        """Add whole rows to a table, in place of those with the same key."""
-        for row in rows[:1]:
-            self.executemany(f"INSERT OR REPLACE INTO {table} VALUES ({', '.join('?' * len(row))})", rows)
-
-    def objects(self) -> list[tuple[str, str]]:
-        """Kind and name of everything in the database."""
-        return self.execute("SELECT type, name FROM sqlite_master").fetchall()
-
-    def columns(self, table: str) -> list[str]:
-        """Names of a table's columns."""
-        return [row[1] for row in self.execute(f"PRAGMA table_info({table})")]
+    # A server looks after the following itself.
 
     def defects(self) -> Iterator[str]:
-        """What SQLite finds wrong with pages and indexes; it lists all of one kind in one text of several lines."""
-        for (text,) in self.execute("PRAGMA integrity_check(5)"):
-            for line in text.splitlines():
-                if line != "ok" and not line.startswith("***"):
-                    yield f"SQLite: {line}"
+        """Yield what the database finds wrong with its own pages and indexes, one line each."""
+        return iter(())
 
-    def trial_ids_after(self, last: int, count: int) -> int:
-        """The first of ``count`` successive keys; a transaction that writes is alone, so they follow the last."""
-        return last + 1
+    def examine(self) -> None:  # noqa: B027
+        """Raise an error of the database if its pages are damaged."""
+
+    def settle(self) -> None:  # noqa: B027
+        """Begin to write: what is committed from now on survives a power cut."""
+
+    def require_place(self) -> None:  # noqa: B027
+        """Raise if what was committed did not go to the study's own place."""
+
+    def close_at_rest(self) -> None:
+        """Close the connection and leave the study as it is when nobody runs it."""
+        self.close()

@@ -12,8 +12,7 @@ from typing import Any, TypeVar, get_args
 from pareto_monoped.config import checked, parsed_json
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.storage.connection import Connection
-from pareto_monoped.storage.database import reading
-from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.seals import damaged, has_seals, read_seals
 from pareto_monoped.uncertainty.sensitivity import About, Sensitivity
 from pareto_monoped.uncertainty.statistics import Robustness
@@ -32,13 +31,13 @@ class ExtraTable:
 
     @property
     def create(self) -> str:
-        """The statement that makes it where it is not there."""
+        """Statement that makes the table where it is missing."""
         columns = f"{self.key} PRIMARY KEY, settings TEXT NOT NULL, result TEXT NOT NULL"
         return f"CREATE TABLE IF NOT EXISTS monoped_{self.what} ({columns})"
 
     def rows(self, connection: Connection) -> list[Row]:
-        """All rows by their keys; none if the study has no such table."""
-        there = connection.columns(f"monoped_{self.what}")
+        """Return all rows by their keys; none if the study has no such table."""
+        there = ("table", f"monoped_{self.what}") in connection.objects()
         key = self.key.split()[0]
         select = f"SELECT {key}, settings, result FROM monoped_{self.what} ORDER BY {key}"
         return connection.execute(select).fetchall() if there else []
@@ -47,7 +46,7 @@ class ExtraTable:
 def read_rows(
     db: StudyPlace, table: ExtraTable, make: Callable[[Any, Any, str], T]
 ) -> dict[Any, tuple[dict[str, Any], T]]:
-    """Settings and results by key, checked against the running hash.
+    """Read settings and results by key, and check them against the running hash.
 
     Args:
         db: the study's database.
@@ -57,7 +56,7 @@ def read_rows(
     Raises:
         DatabaseError: missing, not a study, or damaged.
     """
-    with reading(db) as connection:
+    with storage_of(db).reading() as connection:
         rows = table.rows(connection)
         findings = read_seals(connection, db).row_findings(table.what, rows) if has_seals(connection) else []
     if findings:

@@ -1,6 +1,6 @@
 """Read the front that a study keeps, without its other trials.
 
-Trials of a study that an Optuna user has added: ignored here, counted, and named.
+Count the trials that an Optuna user has added to a study, which are ignored here, and warn of them.
 """
 
 from dataclasses import dataclass
@@ -9,17 +9,17 @@ import pandas as pd
 
 from pareto_monoped.definition.study import Study, study_from_dict
 from pareto_monoped.design import VARIABLES, Variable, in_use
+from pareto_monoped.storage.base import undamaged
 from pareto_monoped.storage.connection import Connection
-from pareto_monoped.storage.database import reading, undamaged
 from pareto_monoped.storage.kept_front import KeptFront, kept_row, rows_of
 from pareto_monoped.storage.meta import StudyMeta, meta_of_rows
-from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.reader import read_study, trial_frame, with_agility, with_motors
 from pareto_monoped.storage.seals import ROWS, damaged, has_seals, read_seals
 
 
 def foreign_count(connection: Connection) -> int:
-    """How many of Optuna's trials are not of this package."""
+    """Count how many of Optuna's trials are not of this package."""
     (more,) = connection.execute(
         "SELECT (SELECT count(*) FROM trials) - (SELECT count(*) FROM monoped_trials)"
     ).fetchone()
@@ -27,7 +27,7 @@ def foreign_count(connection: Connection) -> int:
 
 
 def foreign_note(count: int) -> str:
-    """What is said of them."""
+    """Return the warning about foreign trials."""
     what, them = ("1 of Optuna's trials is", "it") if count == 1 else (f"{count} of Optuna's trials are", "them")
     return (
         f"{what} not of this package: ignored here, but Optuna's best_trials may have {them}; 'repair DB' drops {them}"
@@ -38,12 +38,11 @@ def foreign_note(count: int) -> str:
 class StudyFront:
     """The front of a study, read without its other trials."""
 
-    #: db, study, meta, sealed: as in ``StudyData``
-    db: StudyPlace
+    db: StudyPlace  #: the database it was read from
     study: Study
     meta: StudyMeta
-    rows: pd.DataFrame  #: as by ``StudyData.front``
-    #: The paper's seven variables, and the optional ones of which some trial has another value than the default
+    rows: pd.DataFrame  #: as ``StudyData.front`` returns them
+    #: the paper's seven variables, and the optional ones of which some trial has another value than the default
     used: tuple[Variable, ...]
     foreign: int  #: how many of Optuna's trials are not of this package
     sealed: bool
@@ -60,7 +59,7 @@ def read_front(db: StudyPlace) -> StudyFront:
 
 
 def _read_front(db: StudyPlace) -> StudyFront:
-    with reading(db) as connection:
+    with storage_of(db).reading() as connection:
         foreign = foreign_count(connection)
         if has_seals(connection):
             return _kept(connection, db, foreign)

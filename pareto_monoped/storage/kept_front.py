@@ -16,8 +16,7 @@ from pareto_monoped.pareto.front import GrowingFront
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.storage.columns import listed
 from pareto_monoped.storage.connection import Connection
-from pareto_monoped.storage.database import reading
-from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.place import StudyPlace, storage_of
 
 FRONT = """
 CREATE TABLE monoped_front (
@@ -31,24 +30,20 @@ it counts, from the first on. While a study with a long front runs, it may lack 
 
 STATES = ("feasible", "infeasible", "failed")
 _CHUNK = 500
-"""Rows asked for at once; SQLite takes at least 999 parameters."""
+"""Rows asked for at once: our own choice."""
 _SHARE = 16
 """The row is written again once so many times the new trials outnumber the front. Our own choice: a front of a thousand
 designs is written with every generation, and one of any length takes less than 200 bytes per trial."""
 
 
 class KeptFront:
-    """Follows the front of a study while it grows.
-
-    Attributes:
-        counts: number of trials in each state.
-        used: names of the optional variables of which some trial has another value than the default.
-    """
+    """Follow the front of a study while it grows."""
 
     def __init__(self, objectives: Objectives) -> None:
         self._objectives = objectives
         self._front = GrowingFront(objectives)
-        self.counts = dict.fromkeys(STATES, 0)
+        self.counts = dict.fromkeys(STATES, 0)  #: number of trials in each state
+        #: names of the optional variables of which some trial has another value than the default
         self.used: set[str] = set()
         self._stored = 0
 
@@ -82,10 +77,10 @@ class KeptFront:
         values = np.array(rows, dtype=np.float64).reshape(-1, len(self._objectives.names))
         self._front.add(np.array(numbers, dtype=np.int64), values)
         self._stored = self.trials
-        cursor = connection.execute("SELECT * FROM monoped_trials WHERE trial >= ? ORDER BY trial", (self._stored,))
-        names, later = [entry[0] for entry in cursor.description], cursor.fetchall()
+        select = "SELECT * FROM monoped_trials WHERE trial >= :first ORDER BY trial"
+        later = connection.execute(select, {"first": self._stored}).fetchall()
         if later:
-            self.add(dict(zip(names, zip(*later, strict=True), strict=True)))
+            self.add(dict(zip(connection.columns("monoped_trials"), zip(*later, strict=True), strict=True)))
 
     def add(self, values: Mapping[str, Any]) -> None:
         """Add trials: column -> values, one per trial."""
@@ -118,20 +113,20 @@ class KeptFront:
 
 
 def kept_row(connection: Connection) -> tuple[list[int], dict[str, int], set[str]]:
-    """Numbers of the trials on the kept front, how many trials have each state, and names of the optional variables."""
+    """Read the numbers of trials on the front, how many trials have each state, and the optional variables in use."""
     row = connection.execute("SELECT trials, feasible, infeasible, failed, used FROM monoped_front").fetchone()
     numbers = [int(number) for number in parsed_json(row[0])]
     return numbers, dict(zip(STATES, map(int, row[1:4]), strict=True)), set(parsed_json(row[4]))
 
 
 def rows_of(connection: Connection, names: Sequence[str], trials: Sequence[int]) -> list[tuple[Any, ...]]:
-    """Values of some columns of some trials, ascending by number."""
+    """Read some columns of some trials, ascending by number."""
     rows = []
     for first in range(0, len(trials), _CHUNK):
         chunk = trials[first : first + _CHUNK]
-        marks = ", ".join("?" * len(chunk))
+        numbers = ", ".join(map(str, map(int, chunk)))
         rows += connection.execute(
-            f"SELECT {listed(names)} FROM monoped_trials WHERE trial IN ({marks}) ORDER BY trial", chunk
+            f"SELECT {listed(names)} FROM monoped_trials WHERE trial IN ({numbers}) ORDER BY trial"
         ).fetchall()
     return rows
 
@@ -146,7 +141,7 @@ def front_trials(db: StudyPlace) -> dict[int, str]:
         DatabaseError: missing, not a study, damaged, of a newer version, or of format 1, which kept no front.
         ServerError: the server is away.
     """
-    with reading(db) as connection:
+    with storage_of(db).reading() as connection:
         (study,) = connection.execute("SELECT value FROM monoped_meta WHERE key = 'study'").fetchone()
         (numbers,) = connection.execute("SELECT trials FROM monoped_front").fetchone()
         objectives = objectives_of(parsed_json(study)["objectives"])

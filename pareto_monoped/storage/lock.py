@@ -1,33 +1,66 @@
-"""At most one writer per study: a lock that ends with its process."""
+"""At most one writer per study file: a lock that ends with its process; files that cannot be a study."""
 
 import errno
 import fcntl
 import os
 import stat
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from pareto_monoped.errors import DatabaseError, OutputError
-from pareto_monoped.files import is_failure
-from pareto_monoped.storage.place import BY_NAME, StudyPlace, inaccessible, require_file_name
-from pareto_monoped.storage.server.address import Server
-
-if TYPE_CHECKING:
-    from pareto_monoped.storage.server.lock import ServerLock
+from pareto_monoped.errors import DatabaseError, DiskError, LostTrialsError, OutputError
+from pareto_monoped.files import cure_of, is_failure
+from pareto_monoped.storage.base import BY_NAME, StudyLock
 
 
-class Lock:
+def inaccessible(path: Path, error: OSError) -> DatabaseError | DiskError:
+    """Return the error for a database that the system does not let us read or write."""
+    kind = DiskError if is_failure(error) else DatabaseError
+    said = error.strerror or error
+    return kind(f"study database {str(path)!r}: cannot be read or written ({said}); {cure_of(error)}")
+
+
+def require_file_name(path: Path) -> None:
+    """Refuse what cannot be the name of a database.
+
+    Raises:
+        DatabaseError: a folder, a device or pipe, or a name that the system does not take.
+    """
+    try:
+        mode = path.stat().st_mode
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        raise inaccessible(path, error) from None
+    except ValueError:
+        raise DatabaseError(f"study database {str(path)!r}: cannot be the name of a file; check the path") from None
+    if not stat.S_ISREG(mode):
+        what = "a folder" if stat.S_ISDIR(mode) else "no regular file"
+        raise DatabaseError(f"study database {str(path)!r}: is {what}; give the name of a file")
+
+
+class Lock(StudyLock):
     """A lock that this process holds; its file has the process id and how much of the study is safe."""
 
-    def __init__(self, descriptor: int, path: Path, before: int) -> None:
-        self.path = path
-        self.before = before
-        """Links of the running hash that were safe when the last holder was killed; 0 if it ended in order."""
+    def __init__(self, descriptor: int, path: Path, db: Path, before: int) -> None:
+        self._descriptor, self._path, self._db = descriptor, path, db
+        self._before = before  #: links of the running hash that were safe when the last holder was killed, else 0
+        #: whether the study is known to have all that was safe; otherwise the file stays, to say so to the next run
         self.settled = before == 0
-        """Whether the study is known to have all that was safe; otherwise the file stays, to say so to the next run."""
-        self._descriptor = descriptor
+
+    def confirm(self, links: int) -> None:
+        """Check that a study of so many links of the running hash has all that was safe before.
+
+        Raises:
+            LostTrialsError: it has not.
+        """
+        if links < self._before:
+            raise LostTrialsError(
+                f"study database {str(self._db)!r}: lacks the last {self._before - links} transactions of a killed "
+                f"run, which were safe: its log {self._db.name + '-wal'!r} was deleted, or an older copy was put back; "
+                f"restore both, or delete {self._path.name!r} to go on from here"
+            )
+        self.acknowledge(links)
 
     def acknowledge(self, links: int) -> None:
         """Note that so many links of the running hash are safe; what survives a kill tells if they get lost."""
@@ -35,7 +68,7 @@ class Lock:
         try:
             os.pwrite(self._descriptor, _content(links), 0)
         except OSError as error:
-            raise inaccessible(self.path, error) from None
+            raise inaccessible(self._path, error) from None
 
 
 def _content(links: int) -> bytes:
@@ -43,29 +76,16 @@ def _content(links: int) -> bytes:
     return f"{os.getpid():<10}\n{links:<10}\n".encode("ascii")
 
 
-def locked(db: StudyPlace) -> "AbstractContextManager[Lock | ServerLock]":
-    """Lock the study for this process, on whatever place it stands.
+@contextmanager
+def locked(db: Path) -> Iterator[Lock]:
+    """Lock a file for this process, by the file ``DB-lock`` beside it, links resolved.
 
-    The lock ends when the process ends in any way, so a killed run never blocks the next one.
+    The kernel releases the lock when the process ends in any way, so a killed run never blocks the next one.
 
     Raises:
-        DatabaseError: another process holds the study.
-        OutputError: the file's folder cannot be written to, or something else has the name of the lock.
+        DatabaseError: another process holds the file.
+        OutputError: the folder cannot be written to, or something else has the name of the lock.
         DiskError: the disk is full or fails.
-        ServerError: the server is away.
-    """
-    if isinstance(db, Path):
-        return _locked_file(db)
-    from pareto_monoped.storage.server.lock import locked_there
-
-    return locked_there(db)
-
-
-@contextmanager
-def _locked_file(db: Path) -> Iterator[Lock]:
-    """Lock a file. The file ``DB-lock`` beside the database, links resolved, holds the process id.
-
-    The kernel releases the lock when the process ends in any way.
     """
     require_file_name(db)
     path = _lock_path(db)
@@ -110,7 +130,7 @@ def _locked_file(db: Path) -> Iterator[Lock]:
             except OSError as error:
                 path.unlink(missing_ok=True)
                 raise inaccessible(db, error) from None
-            lock = Lock(descriptor, path, before)
+            lock = Lock(descriptor, path, db, before)
             try:
                 yield lock
             finally:
@@ -130,17 +150,13 @@ def _in_the_way(path: Path) -> OutputError:
 
 
 def _words(descriptor: int) -> list[str]:
-    """The words of a lock file: process id, and how many links are safe; a first one that is no number is unknown."""
+    """Return the words of a lock file: process id (``unknown`` if it is no number), and how many links are safe."""
     words = os.pread(descriptor, 64, 0).decode("ascii", "replace").split()
     return words if words and words[0].isdigit() else ["unknown", *words]
 
 
-def holder(db: StudyPlace) -> int | None:
-    """Process id of the run that holds the study, or None."""
-    if isinstance(db, Server):
-        from pareto_monoped.storage.server.lock import holder_there
-
-        return holder_there(db)
+def holder(db: Path) -> int | None:
+    """Return the process id of the run that holds a file, or None."""
     try:
         descriptor = os.open(_lock_path(db), os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:
@@ -151,11 +167,10 @@ def holder(db: StudyPlace) -> int | None:
         word = _words(descriptor)[0]
         return int(word) if word.isdigit() else None
     except OSError:
-        return None
-    else:
-        return None
+        pass
     finally:
         os.close(descriptor)
+    return None
 
 
 def _lock_path(db: Path) -> Path:
@@ -166,8 +181,6 @@ def _lock_path(db: Path) -> Path:
 
 def _same_file(descriptor: int, path: Path) -> bool:
     try:
-        there = path.stat()
+        return os.path.samestat(os.fstat(descriptor), path.stat())
     except FileNotFoundError:
         return False
-    here = os.fstat(descriptor)
-    return (here.st_ino, here.st_dev) == (there.st_ino, there.st_dev)

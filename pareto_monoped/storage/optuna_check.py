@@ -11,17 +11,15 @@ import numpy as np
 from pareto_monoped.definition.study import Study
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.storage.connection import Connection, Rows
-from pareto_monoped.storage.database import reading
-from pareto_monoped.storage.lock import locked
 from pareto_monoped.storage.optuna_tables import OURS, stored_digest, study_digests, trial_ids
-from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.storage.seals import BY_OPTUNA, OPTUNA_STUDY, Seals, read_seals
 from pareto_monoped.storage.store import Store
 
 
 def optuna_numbers(connection: Connection, count: int, seals: Seals | None) -> list[int]:
-    """Optuna's numbers of a study's ``count`` trials; they are not ours where an Optuna user has added trials.
+    """Return Optuna's numbers of a study's ``count`` trials; they are not ours where an Optuna user has added trials.
 
     Trials that were written directly are numbered on from the first of their generation, which the running hash has
     where it is another one. Those that Optuna has written for us carry our number.
@@ -32,7 +30,8 @@ def optuna_numbers(connection: Connection, count: int, seals: Seals | None) -> l
         for ours, number in changed:
             numbers[ours:] = number + np.arange(count - ours)
     rows = connection.execute(
-        "SELECT value_json, number FROM trial_system_attributes JOIN trials USING (trial_id) WHERE key = ?", (OURS,)
+        "SELECT value_json, number FROM trial_system_attributes JOIN trials USING (trial_id) WHERE key = :key",
+        {"key": OURS},
     )
     for text, number in rows:
         if text.isdigit() and int(text) < count:
@@ -41,7 +40,7 @@ def optuna_numbers(connection: Connection, count: int, seals: Seals | None) -> l
 
 
 def foreign_trials(connection: Connection, count: int, seals: Seals | None) -> tuple[int, ...]:
-    """Optuna's numbers of the trials that are not among the study's ``count``."""
+    """Return Optuna's numbers of the trials that are not among the study's ``count``."""
     ours = set(optuna_numbers(connection, count, seals))
     return tuple(n for (n,) in connection.execute("SELECT number FROM trials ORDER BY number") if n not in ours)
 
@@ -107,7 +106,7 @@ def _different(
     wanted: dict[Any, Any],
     present: "np.typing.NDArray[np.bool_]",
 ) -> Iterator[str]:
-    """The first of some values (number, key, value) that is not the wanted one, or is missing."""
+    """Yield the first of some values (number, key, value) that is not the wanted one, or is missing."""
     counts = np.zeros(len(present), dtype=np.int64)
     for number, key, value in rows:
         k = place.get(number)
@@ -151,9 +150,9 @@ def repair(db: StudyPlace) -> tuple[int, ...]:
         DatabaseError: not a study, in use, or damaged: then nothing is changed.
     """
     read_study(db)
-    with locked(db):
+    with storage_of(db).locked():
         data = read_study(db)
-        with reading(db) as connection:
+        with storage_of(db).reading() as connection:
             seals = read_seals(connection, db) if data.sealed else None
             foreign = foreign_trials(connection, len(data.trials), seals)
             findings = optuna_findings(connection, data, seals)

@@ -1,27 +1,19 @@
-"""Optuna's own tables: what Optuna and its dashboard show of a study.
-
-A study as a storage of Optuna that can only be read, for programs that show it.
-"""
+"""Optuna's own tables: what Optuna and its dashboard show of a study."""
 
 import json
-import sqlite3
 import warnings
 from collections.abc import Collection, Mapping, Sequence
 from datetime import UTC
 from typing import Any
 
-import optuna
-
 from pareto_monoped.definition.study import Study
 from pareto_monoped.design import NAMES
 from pareto_monoped.search.scoring import values_of
 from pareto_monoped.search.space import Coordinates
+from pareto_monoped.storage.base import Storage
 from pareto_monoped.storage.columns import Generation
 from pareto_monoped.storage.connection import Connection
-from pareto_monoped.storage.database import READ_TIMEOUT_S
-from pareto_monoped.storage.place import StudyPlace
 from pareto_monoped.storage.seals import row_digest
-from pareto_monoped.storage.server.address import Server
 
 KNOWN_SCHEMAS = ("v3.2.0.a",)
 """Revisions of Optuna's schema that are written directly. For any other, Optuna writes its tables itself."""
@@ -51,23 +43,24 @@ _OF_OTHERS = ("trial_intermediate_values", "trial_heartbeats")
 
 
 def trial_ids(connection: Connection) -> dict[int, int]:
-    """Optuna's number of each trial -> its key. Optuna has no index of numbers: a search for each would read all."""
+    """Read the key of each trial by Optuna's number, of which Optuna has no index: a search for each reads all."""
     return dict(connection.execute("SELECT number, trial_id FROM trials ORDER BY number").fetchall())
 
 
 def drop_trials(connection: Connection, foreign: Sequence[int]) -> None:
     """Delete Optuna's trials of these numbers, and number the others from 0 on, as Optuna would have."""
     known = trial_ids(connection)
-    ids = [(known.pop(n),) for n in foreign]
+    ids = [{"id": known.pop(n)} for n in foreign]
     for table in (*_OF_TRIALS, *_OF_OTHERS, "trials"):
-        connection.executemany(f"DELETE FROM {table} WHERE trial_id = ?", ids)
+        connection.executemany(f"DELETE FROM {table} WHERE trial_id = :id", ids)
     connection.executemany(
-        "UPDATE trials SET number = ? WHERE trial_id = ?", [(n, i) for n, i in enumerate(known.values())]
+        "UPDATE trials SET number = :number WHERE trial_id = :id",
+        [{"number": n, "id": i} for n, i in enumerate(known.values())],
     )
 
 
 def stored_digest(connection: Connection, ids: Collection[int]) -> str:
-    """The digest that ``OptunaTables.insert`` gave of trials, of what is stored of them now.
+    """Compute the digest that ``OptunaTables.insert`` gave of trials from what is stored of them now.
 
     Args:
         connection: reads the database.
@@ -77,8 +70,8 @@ def stored_digest(connection: Connection, ids: Collection[int]) -> str:
     for table, columns in _WRITTEN.items():
         found = connection.execute(
             f"SELECT {', '.join(columns)} FROM {table} "
-            f"WHERE trial_id BETWEEN ? AND ? ORDER BY trial_id, {_KEYS[table]}",
-            (min(ids), max(ids)),
+            f"WHERE trial_id BETWEEN :first AND :last ORDER BY trial_id, {_KEYS[table]}",
+            {"first": min(ids), "last": max(ids)},
         )
         # The keys of a generation follow one another, but for those of trials that somebody has put in between.
         rows.append([row for row in found if row[0] in ids])
@@ -94,7 +87,7 @@ _OF_STUDY = {
 
 
 def study_digests(connection: Connection) -> dict[str, str]:
-    """Digests of what Optuna's tables say of the study itself: per table, and per attribute of the study."""
+    """Compute digests of what Optuna's tables say of the study itself: per table, and per attribute of the study."""
     rows: dict[str, list[Any]] = {table: connection.execute(sql).fetchall() for table, sql in _OF_STUDY.items()}
     for kind in ("user", "system"):
         for row in connection.execute(f"SELECT * FROM study_{kind}_attributes"):
@@ -103,17 +96,17 @@ def study_digests(connection: Connection) -> dict[str, str]:
 
 
 def _digest(rows: list[list[Any]]) -> str:
-    """Digest of rows of the tables of ``_WRITTEN``; the long texts of distributions are the same for all trials."""
+    """Compute the digest of rows of the tables of ``_WRITTEN``; all trials have the same distributions."""
     trials, params, *others = rows
     distributions = sorted({(name, text) for _, name, _, text in params})
     return row_digest([trials, [row[:3] for row in params], distributions, *others])
 
 
-def create_tables(path: StudyPlace, study: Study, attributes: Mapping[str, Any]) -> None:
+def create_tables(draft: Storage, study: Study, attributes: Mapping[str, Any]) -> None:
     """Let Optuna create a new database with an empty study.
 
     Args:
-        path: where; must not exist.
+        draft: keeps it; must not exist.
         study: gives the name.
         attributes: the study's user attributes, JSON values.
     """
@@ -125,7 +118,7 @@ def create_tables(path: StudyPlace, study: Study, attributes: Mapping[str, Any])
     verbosity = optuna.logging.get_verbosity()
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     try:
-        storage = _optuna_storage(path)
+        storage = draft.optuna_storage()
         try:
             study_id = storage.create_new_study(
                 [
@@ -145,25 +138,12 @@ def create_tables(path: StudyPlace, study: Study, attributes: Mapping[str, Any])
         optuna.logging.set_verbosity(verbosity)
 
 
-def _optuna_storage(path: StudyPlace) -> Any:
-    import optuna
-    from sqlalchemy.engine import URL
-
-    if isinstance(path, Server):
-        from pareto_monoped.storage.server.connection import SQLALCHEMY, creator
-
-        return optuna.storages.RDBStorage(SQLALCHEMY, engine_kwargs={"creator": creator(path)})
-    # In a plain "sqlite:///..." text, a question mark or percent sign in the path would get a meaning.
-    url = URL.create("sqlite", database=str(path)).render_as_string(hide_password=False)
-    return optuna.storages.RDBStorage(url)
-
-
 class OptunaTables:
     """Writes trials into an existing study: directly if the schema is known, otherwise by Optuna's public call."""
 
-    def __init__(self, path: StudyPlace, study_id: int, coordinates: Coordinates) -> None:
+    def __init__(self, storage: Storage, study_id: int, coordinates: Coordinates) -> None:
         study = coordinates.study
-        self._path = path
+        self._storage = storage
         self._study_id = study_id
         self._objectives = study.objectives
         self._free = [i for i, name in enumerate(NAMES) if name in study.free]
@@ -201,7 +181,7 @@ class OptunaTables:
         return sealed if first == generation.first_trial else {**sealed, "optuna_first": {key: str(first)}}
 
     def _rows(self, connection: Connection, generation: Generation) -> tuple[dict[str, list[Any]], int]:
-        """The rows of each table of ``_WRITTEN``, and Optuna's number of the first trial."""
+        """Return the rows of each table of ``_WRITTEN``, and Optuna's number of the first trial."""
         # Optuna's numbers and primary keys are ours, and one more, unless an Optuna user has added trials. It numbers
         # trials by their keys, so the last key has the last number; to look for that would be to read all trials.
         first, last_id = connection.execute(
@@ -239,7 +219,7 @@ class OptunaTables:
         return rows, first
 
     def _parameter_rows(self, generation: Generation, ids: Sequence[int]) -> list[tuple[Any, ...]]:
-        """Rows of the table of parameters, those of one trial after the other; motors by their positions."""
+        """Return rows of the table of parameters, those of one trial after the other; motors by their positions."""
         names = [*(NAMES[i] for i in self._free), *self._motors]
         columns = generation.designs[:, self._free].T.tolist()
         columns += [[float(motors.index(name)) for name in generation.motors[n]] for n, motors in self._motors.items()]
@@ -264,7 +244,7 @@ class OptunaTables:
         """
         import optuna
 
-        storage = _optuna_storage(self._path)
+        storage = self._storage.optuna_storage()
         try:
             there: set[Any] = set()
             if storage.get_n_trials(self._study_id) > generation.first_trial:
@@ -309,34 +289,3 @@ def _attributes(generation: Generation, k: int) -> dict[str, Any]:
     if generation.height_weight is not None:
         attributes["height_weight"] = generation.height_weight
     return attributes
-
-
-def reading_storage(db: StudyPlace) -> optuna.storages.RDBStorage:
-    """Optuna's view of a study database; whatever would write to it fails with an error of the database.
-
-    Args:
-        db: the database, which may be growing.
-    """
-    if isinstance(db, Server):
-        from pareto_monoped.storage.server.connection import SQLALCHEMY, creator
-
-        return optuna.storages.RDBStorage(
-            SQLALCHEMY,
-            engine_kwargs={"creator": creator(db, read_only=True)},
-            skip_compatibility_check=True,
-            skip_table_creation=True,
-        )
-    address = f"{db.resolve().as_uri()}?mode=ro"
-
-    def connect() -> sqlite3.Connection:
-        connection = sqlite3.connect(address, uri=True, timeout=READ_TIMEOUT_S, check_same_thread=False)
-        connection.execute("PRAGMA query_only = ON")
-        return connection
-
-    # The address of the file is that of ``connect``; this one only says which kind of database it is.
-    return optuna.storages.RDBStorage(
-        "sqlite:///study.db",
-        engine_kwargs={"creator": connect},
-        skip_compatibility_check=True,
-        skip_table_creation=True,
-    )

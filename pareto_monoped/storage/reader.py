@@ -23,10 +23,10 @@ from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.indicators import ReferencePoint
 from pareto_monoped.pareto.objectives import Objectives
+from pareto_monoped.storage.base import undamaged
 from pareto_monoped.storage.columns import COLUMNS, LATER, REQUIRED
-from pareto_monoped.storage.database import reading, undamaged
 from pareto_monoped.storage.meta import StudyMeta, meta_of_rows, motor_keys
-from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.seals import ROWS, Seals, damaged, has_seals, read_seals
 
 if TYPE_CHECKING:
@@ -155,10 +155,10 @@ class StudyData:
 
     db: StudyPlace  #: the database it was read from
     study: Study  #: its definition
-    #: What else is stored about it: versions, hash, budget, how it ended, contents of motor and calibration
+    #: what else is stored about it: versions, hash, budget, how it ended, contents of motor and calibration
     meta: StudyMeta
     trials: pd.DataFrame  #: one row per trial; ``columns.COLUMNS`` says what each column is
-    #: One row per generation: generation, evaluations, hypervolume, seconds, all counted from the start
+    #: one row per generation: generation, evaluations, hypervolume, seconds, all counted from the start
     history: pd.DataFrame
     audits: pd.DataFrame  #: one row per audited trial: trial, well_conditioned, the measures of the audit, reason
     checkpoint: Checkpoint  #: for resuming
@@ -166,7 +166,7 @@ class StudyData:
     links: int = 0  #: length of its running hash
 
     def __repr__(self) -> str:
-        """One line: name, place and how many trials."""
+        """Return one line: name, place and number of trials."""
         return f"StudyData({self.study.name!r}, {str(self.db)!r}, {len(self.trials)} trials)"
 
     @cached_property
@@ -224,18 +224,18 @@ class StudyData:
         return (papers or self.kits)[0]
 
     def kit_of_trial(self, trial: int) -> "JointMaps":
-        """The gearboxes of a trial's motors."""
+        """Return the gearboxes of a trial's motors."""
         ((kit, _),) = self.kit_rows(self.trials[self.trials["trial"] == trial])
         return kit
 
     def kit_rows(self, trials: pd.DataFrame) -> "Iterator[tuple[JointMaps, NDArray[np.intp]]]":
-        """The gearboxes of each kit of motors that some of these trials have, and the positions of those trials."""
+        """Yield the gearboxes of each kit of motors among these trials, and the positions of its trials."""
         numbers = self.kit_numbers(trials)
         for k in np.unique(numbers).tolist():
             yield self.kits[k], np.flatnonzero(numbers == k)
 
     def kit_numbers(self, trials: pd.DataFrame) -> NDArray[np.intp]:
-        """Which of ``kits`` each of n trials has, shape (n,)."""
+        """Return the index in ``kits`` of each of n trials, shape (n,)."""
         hip, knee = ("motor", "motor") if self.study.motor is not None else ("hip_motor", "knee_motor")
         known = {(kit.hip.motor.name, kit.knee.motor.name): k for k, kit in enumerate(self.kits)}
         return np.array([known[pair] for pair in zip(trials[hip], trials[knee], strict=True)], dtype=np.intp)
@@ -271,7 +271,7 @@ class StudyData:
         return self.study.reference_point
 
     def front(self, include_ill_conditioned: bool = False, objectives: Objectives | None = None) -> pd.DataFrame:
-        """The non-dominated feasible trials by the first objective, from its least value to its greatest.
+        """Return the non-dominated feasible trials by the first objective, from its least value to its greatest.
 
         Args:
             objectives: other measures than the study's own, under which trials dominate each other.
@@ -297,11 +297,11 @@ def read_study(db: StudyPlace) -> StudyData:
 
 
 def _read_study(db: StudyPlace) -> StudyData:
-    with reading(db) as connection:
+    with storage_of(db).reading() as connection:
         sealed = has_seals(connection)
         rows = {table: connection.execute(sql).fetchall() for table, sql in ROWS.items() if sealed or table != "front"}
         cursor = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
-        trials = trial_frame([entry[0] for entry in cursor.description], cursor, db)
+        trials = trial_frame(connection.columns("monoped_trials"), cursor, db)
         seals = read_seals(connection, db) if sealed else None
     meta = meta_of_rows(rows["meta"], db)
     study = study_from_dict(meta.study, source=f"study database {str(db)!r}")

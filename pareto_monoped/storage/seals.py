@@ -65,12 +65,12 @@ Written = Mapping[str, Mapping[str, str]]
 
 
 def row_digest(values: Sequence[Any]) -> str:
-    """Digest of a row of numbers and text as SQLite returns them."""
-    return hashlib.sha256(json.dumps(list(values)).encode()).hexdigest()[:_DIGITS]
+    """Return the digest of a row of numbers and text; rows within it may be of any type."""
+    return hashlib.sha256(json.dumps(list(values), default=list).encode()).hexdigest()[:_DIGITS]
 
 
 def trial_digests(names: Sequence[str], values: Mapping[str, Any]) -> list[str]:
-    """Digests of trials, the same for trials in memory and as read again.
+    """Return digests of trials, the same for trials in memory and as read again.
 
     Args:
         names: of the columns to digest.
@@ -90,7 +90,7 @@ def trial_digests(names: Sequence[str], values: Mapping[str, Any]) -> list[str]:
 
 
 def row_digests(rows: Iterable[Sequence[Any]]) -> dict[str, str]:
-    """Key -> digest of rows of a table of ``ROWS``."""
+    """Return the digest of each row of a table of ``ROWS`` by its key."""
     return {str(row[0]): row_digest(row) for row in rows}
 
 
@@ -127,9 +127,8 @@ class Sealer:
                 self._names, self._names_link = list(names), link
         text = json.dumps({table: dict(rows) for table, rows in written.items()})
         digest = _link_hash(previous, first, columns, trials, text)
-        self._connection.execute(
-            "INSERT INTO monoped_seals VALUES (?, ?, ?, ?, ?, ?)", (link, first, columns, trials, text, digest)
-        )
+        row = (link, first, columns, trials, text, digest)
+        self._connection.insert("monoped_seals", ("link", "first", "columns", "trials", "written", "hash"), [row])
         self.links = link + 1
 
 
@@ -139,9 +138,9 @@ class Seals:
 
     db: StudyPlace  #: the study's database
     links: int  #: number of links in the chain
-    #: Number of the first trial, columns and digests of the trials of each link that has trials
+    #: number of the first trial, columns and digests of the trials of each link that has trials
     parts: tuple[tuple[int, tuple[str, ...], str], ...]
-    #: The latest digests of the rows of all other tables
+    #: the latest digests of the rows of all other tables
     written: dict[str, dict[str, str]] = field(default_factory=dict)
 
     @property
@@ -186,7 +185,7 @@ class Seals:
 
 
 def _not_default(values: Mapping[str, Any], names: Iterable[str], count: int) -> Any:
-    """Which of these trials have a value in a column that came after them, where they can only have its default."""
+    """Return which trials have a value in a later column, where they can only have its default."""
     wrong = np.zeros(count, dtype=bool)
     for name in names:
         if name in _TEXTS:
@@ -238,7 +237,7 @@ _SHOWN = 3
 
 
 def damaged(db: StudyPlace, findings: Sequence[str]) -> DatabaseError:
-    """The error for rows that do not match their hash."""
+    """Return the error for rows that do not match their hash."""
     more = f" and {len(findings) - _SHOWN} others" if len(findings) > _SHOWN else ""
     return DatabaseError(
         f"study database {str(db)!r}: is damaged ({'; '.join(findings[:_SHOWN])}{more}); restore a copy"

@@ -15,12 +15,10 @@ from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import best_at_height
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.storage.connection import Connection
-from pareto_monoped.storage.database import reading
 from pareto_monoped.storage.front_reader import foreign_count
 from pareto_monoped.storage.kept_front import STATES, KeptFront, rows_of
-from pareto_monoped.storage.lock import holder
 from pareto_monoped.storage.meta import StudyMeta, meta_of_rows
-from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.seals import has_seals
 
 
@@ -28,17 +26,15 @@ from pareto_monoped.storage.seals import has_seals
 class Summary:
     """The size and the result of a study."""
 
-    #: study, meta: as in ``reader.StudyData``
-    study: Study
+    study: Study  #: the definition
     meta: StudyMeta
     counts: dict[str, int]  #: number of trials that are feasible, infeasible and failed
     seconds: float  #: running time so far, over all sessions
     ill_conditioned: int  #: number of trials that failed their audit
-    #: Values of the objectives of the designs on the front, shape (n, m), by the first of them
+    #: values of the objectives of the designs on the front, shape (n, m), by the first of them
     front: NDArray[np.float64]
-    #: heights_m, energies_j: of the designs on the front, shape (n,)
-    heights_m: NDArray[np.float64]
-    energies_j: NDArray[np.float64]
+    heights_m: NDArray[np.float64]  #: heights of the designs on the front, shape (n,)
+    energies_j: NDArray[np.float64]  #: energies of the designs on the front, shape (n,)
     foreign: int  #: how many of Optuna's trials are not of this package
     sealed: bool  #: whether the study has a running hash
 
@@ -49,7 +45,7 @@ def read_summary(db: StudyPlace) -> Summary:
     Raises:
         DatabaseError: missing, not a study, damaged, or of a newer version.
     """
-    with reading(db) as connection:
+    with storage_of(db).reading() as connection:
         sealed = has_seals(connection)
         meta = meta_of_rows(connection.execute("SELECT key, value FROM monoped_meta").fetchall(), db)
         study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
@@ -88,7 +84,7 @@ def _kept(connection: Connection, study: Study) -> tuple[dict[str, int], list[in
 
 
 def _computed(connection: Connection, db: StudyPlace) -> tuple[dict[str, int], list[int]]:
-    """The same of a study of format 1, which keeps no front."""
+    """Compute counts and front of a study of format 1, which keeps no front."""
     from pareto_monoped.storage.reader import read_study
 
     counts = dict.fromkeys(STATES, 0)
@@ -98,7 +94,7 @@ def _computed(connection: Connection, db: StudyPlace) -> tuple[dict[str, int], l
 
 
 def status(db: StudyPlace) -> dict[str, Any]:
-    """Progress and settings of a study, as JSON values.
+    """Return progress and settings of a study as JSON values.
 
     Raises:
         DatabaseError: not a study, damaged, or of a newer version.
@@ -107,7 +103,7 @@ def status(db: StudyPlace) -> dict[str, Any]:
     objectives, done, seconds = data.study.objectives, sum(data.counts.values()), data.seconds
     high = data.energies_j[data.heights_m >= HEADLINE_HEIGHT_M]
     best = best_at_height(data.front, objectives)
-    running = holder(db)
+    running = storage_of(db).holder()
     return {
         "name": data.study.name,
         "database": str(db),

@@ -5,26 +5,20 @@ hundred times faster, and the state of the search algorithm as JSON.
 """
 
 import json
-import sqlite3
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from contextlib import closing, contextmanager
+from typing import Any
 
 import numpy as np
 
 from pareto_monoped.definition.study import Study
 from pareto_monoped.errors import DatabaseError
-from pareto_monoped.files import temporary_beside
 from pareto_monoped.search.space import Coordinates, plain_coordinates
-from pareto_monoped.storage.arrival import settle
+from pareto_monoped.storage.base import FORMAT, StudyLock, check
 from pareto_monoped.storage.columns import LATER, Generation, columns_of
-from pareto_monoped.storage.connection import Connection, FileConnection
-from pareto_monoped.storage.database import FORMAT, check, translated
 from pareto_monoped.storage.extra_rows import ExtraTable, Row
 from pareto_monoped.storage.front_reader import foreign_count
 from pareto_monoped.storage.kept_front import FRONT, KeptFront
-from pareto_monoped.storage.lock import Lock
 from pareto_monoped.storage.meta import StudyMeta, strict_json
 from pareto_monoped.storage.optuna_tables import (
     KNOWN_SCHEMAS,
@@ -35,13 +29,8 @@ from pareto_monoped.storage.optuna_tables import (
     study_digests,
     trial_ids,
 )
-from pareto_monoped.storage.place import StudyPlace
+from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.seals import BY_OPTUNA, OPTUNA_STUDY, ROWS, SEALS, Sealer, row_digests
-from pareto_monoped.storage.server.address import Server
-from pareto_monoped.storage.writing import open_for_writing
-
-if TYPE_CHECKING:
-    from pareto_monoped.storage.server.lock import ServerLock
 
 _OUR_TABLES = """
 CREATE TABLE monoped_meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -60,11 +49,8 @@ _OUR_TABLES += SEALS + FRONT
 def create_database(path: StudyPlace, study: Study, meta: StudyMeta, state: Mapping[str, Any]) -> None:
     """Create a study database without trials; after an error there is none.
 
-    A killed creation leaves the hidden file ``.NAME-new`` and perhaps its journal, or on a server the schema
-    ``NAME_new``, which the next creation deletes.
-
     Args:
-        path: where to; must be vacant, see ``arrival``. The caller holds its lock.
+        path: its place, which must be vacant. The caller holds its lock.
         study: the definition.
         meta: everything else that is known about the study.
         state: state of the algorithm before its first ``ask``.
@@ -74,42 +60,17 @@ def create_database(path: StudyPlace, study: Study, meta: StudyMeta, state: Mapp
         OutputError: the folder cannot be written to.
         ServerError: the server is away.
     """
-    attributes = {"study": meta.study, "versions": meta.versions, "hash": meta.hash}
-    if isinstance(path, Server):
-        from pareto_monoped.storage.server.connection import ServerConnection
-        from pareto_monoped.storage.server.creating import new_schema
-
-        with translated(path), new_schema(path) as schema:
-            create_tables(schema, study, attributes)
-            _create_ours(ServerConnection(schema), study, meta, state)
-        return
-    new = path.with_name(f".{path.name}-new")
-    # Before the file itself: a journal without its file would be rolled back into the next file of that name.
-    Path(f"{new}-journal").unlink(missing_ok=True)
-    with temporary_beside(path, new) as temporary:
-        temporary.unlink()
-        with translated(path):
-            create_tables(temporary, study, attributes)
-            connection = sqlite3.connect(temporary, isolation_level=None, factory=FileConnection)
-            _create_ours(connection, study, meta, state)
-        settle(temporary, path)
-
-
-def _create_ours(connection: Connection, study: Study, meta: StudyMeta, state: Mapping[str, Any]) -> None:
-    """Create our tables beside those of Optuna, and close the connection."""
-    try:
-        columns = ", ".join(f'"{column.name}" {column.sql}' for column in columns_of(study))
-        with _transaction(connection):
-            for statement in _OUR_TABLES.format(columns=columns).split(";"):
-                connection.execute(statement)
-            rows = [("format", strict_json(FORMAT)), *meta.as_rows()]
-            connection.executemany("INSERT INTO monoped_meta VALUES (?, ?)", rows)
-            connection.execute("INSERT INTO monoped_checkpoint VALUES (1, 0, 0, ?)", (strict_json(state),))
+    columns = ", ".join(f'"{column.name}" {column.sql}' for column in columns_of(study))
+    with storage_of(path).creating() as draft:
+        create_tables(draft, study, {"study": meta.study, "versions": meta.versions, "hash": meta.hash})
+        with closing(draft.connect()) as connection, connection.transaction():
+            connection.define(_OUR_TABLES.format(columns=columns))
+            connection.insert("monoped_meta", ("key", "value"), [("format", strict_json(FORMAT)), *meta.as_rows()])
+            state_row = (1, 0, 0, strict_json(state))
+            connection.insert("monoped_checkpoint", ("id", "generation", "told", "state"), [state_row])
             KeptFront(study.objectives).store(connection)
             written = {table: row_digests(connection.execute(sql)) for table, sql in ROWS.items()}
             Sealer(connection).add(written | {OPTUNA_STUDY: study_digests(connection)})
-    finally:
-        connection.close()
 
 
 class Store:
@@ -122,7 +83,7 @@ class Store:
         *,
         coordinates: Coordinates | None = None,
         known_schemas: Sequence[str] = KNOWN_SCHEMAS,
-        lock: "Lock | ServerLock | None" = None,
+        lock: StudyLock | None = None,
     ) -> None:
         """Open an existing study for writing.
 
@@ -139,25 +100,25 @@ class Store:
         self.path = path
         self._objectives, self._columns = study.objectives, columns_of(study)
         self._lock = lock
-        with translated(path):
-            self._place = open_for_writing(path)
-            self._connection = self._place.connection
+        self._storage = storage_of(path)
+        with self._storage.translated():
+            self._connection = self._storage.connect()
             try:
                 self._open(coordinates or plain_coordinates(study), known_schemas)
             except BaseException:
-                self._place.close()
+                self._connection.close()
                 raise
 
     def _open(self, coordinates: Coordinates, known_schemas: Sequence[str]) -> None:
         connection = self._connection
         version = check(connection, self.path)
-        self._place.examine()
+        connection.examine()
         rows = connection.execute("SELECT study_id FROM studies").fetchall()
         if len(rows) != 1:
             raise DatabaseError(
                 f"study database {str(self.path)!r}: holds {len(rows)} studies, must be 1; give a file that 'run' made"
             )
-        self._optuna = OptunaTables(self.path, int(rows[0][0]), coordinates)
+        self._optuna = OptunaTables(self._storage, int(rows[0][0]), coordinates)
         revision = connection.execute("SELECT version_num FROM alembic_version").fetchone()
         self._direct = revision is not None and revision[0] in known_schemas
         self._add_later_columns()
@@ -165,26 +126,25 @@ class Store:
         if version < FORMAT:
             self._adopt()
         self._front.load(connection)
-        self._place.settle()
+        connection.settle()
 
     def _add_later_columns(self) -> None:
         """Give a database of an earlier version the columns that trials have now."""
         there = self._connection.columns("monoped_trials")
         missing = [column for column in LATER if column.name not in there]
         if missing:
-            with _transaction(self._connection):
+            with self._connection.transaction():
                 for column in missing:
-                    self._connection.execute(f"ALTER TABLE monoped_trials ADD COLUMN {column.name} {column.sql}")
+                    self._connection.define(f"ALTER TABLE monoped_trials ADD COLUMN {column.name} {column.sql}")
 
     def _adopt(self) -> None:
         """Give a study of format 1 what it lacks: running hash and kept front, over all that it holds now."""
         execute = self._connection.execute
-        with _transaction(self._connection):
-            for statement in (SEALS, FRONT):
-                execute(statement)
-            execute("UPDATE monoped_meta SET value = ? WHERE key = 'format'", (strict_json(FORMAT),))
-            cursor = execute("SELECT * FROM monoped_trials ORDER BY trial")
-            names, rows = [entry[0] for entry in cursor.description], cursor.fetchall()
+        with self._connection.transaction():
+            self._connection.define(SEALS + FRONT)
+            self._connection.replace("monoped_meta", [("format", strict_json(FORMAT))])
+            names = self._connection.columns("monoped_trials")
+            rows = execute("SELECT * FROM monoped_trials ORDER BY trial").fetchall()
             trials: dict[str, Any] = dict(zip(names, zip(*rows, strict=True), strict=True)) if rows else {}
             if rows:
                 if trials["trial"] != tuple(range(len(rows))):
@@ -208,14 +168,14 @@ class Store:
 
     def __exit__(self, *_: object) -> None:
         """Close; a file is a single one again."""
-        self._place.close_at_rest()
+        self._connection.close_at_rest()
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
-        """A transaction; what it wrote is acknowledged only if the files it went to are still those of the study."""
-        with translated(self.path), _transaction(self._connection):
+        """Write in a transaction, which is acknowledged only if the files it went to are still those of the study."""
+        with self._storage.translated(), self._connection.transaction():
             yield
-        self._place.require_place()
+        self._connection.require_place()
         if self._lock is not None:
             self._lock.acknowledge(self._sealer.links)
 
@@ -243,13 +203,13 @@ class Store:
     def set_rows(self, table: ExtraTable, rows: Sequence[Row]) -> None:
         """Store rows of a table that only some studies have."""
         with self._writing():
-            self._connection.execute(table.create)
+            self._connection.define(table.create)
             self._connection.replace(f"monoped_{table.what}", rows)
             self._sealer.add({table.what: row_digests(rows)})
 
     def foreign_count(self) -> int:
-        """How many of Optuna's trials are not of this package."""
-        with translated(self.path):
+        """Count how many of Optuna's trials are not of this package."""
+        with self._storage.translated():
             return foreign_count(self._connection)
 
     def drop_foreign(self, numbers: Sequence[int], generations: Mapping[int, int]) -> None:
@@ -280,7 +240,7 @@ class Store:
             DatabaseError: the disk is full, or the file cannot be written.
         """
         if not self._direct:
-            with translated(self.path):
+            with self._storage.translated():
                 self._optuna.add_by_optuna(generation)
         with self._writing():
             by_optuna = {"optuna": {str(generation.first_trial): BY_OPTUNA}}
@@ -307,21 +267,3 @@ class Store:
             self._connection.replace("monoped_checkpoint", [state])
             written["checkpoint"] = row_digests([state])
         self._sealer.add(written, generation.first_trial, tuple(values), values)
-
-
-class _transaction:  # noqa: N801
-    """A context: BEGIN, then COMMIT, or ROLLBACK after an error. A commit that fails is rolled back too."""
-
-    def __init__(self, connection: Connection) -> None:
-        self._connection = connection
-
-    def __enter__(self) -> None:
-        self._connection.begin()
-
-    def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
-        try:
-            if kind is None:
-                self._connection.execute("COMMIT")
-        finally:
-            if self._connection.in_transaction:
-                self._connection.execute("ROLLBACK")

@@ -7,23 +7,20 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pareto_monoped.compute.threads import cores
 from pareto_monoped.definition import provenance
 from pareto_monoped.definition.algorithms import WeightedSettings, share_of
 from pareto_monoped.definition.study import Study
-from pareto_monoped.errors import LostTrialsError, StudyError
+from pareto_monoped.errors import StudyError
 from pareto_monoped.pareto.indicators import hypervolume
 from pareto_monoped.search.registry import make_algorithm
-from pareto_monoped.storage.arrival import is_vacant
+from pareto_monoped.storage.base import BY_NAME, StudyLock
 from pareto_monoped.storage.front_reader import foreign_note
-from pareto_monoped.storage.lock import Lock, locked
 from pareto_monoped.storage.meta import StudyMeta
-from pareto_monoped.storage.place import BY_NAME, StudyPlace
+from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.reader import StudyData, read_study
-from pareto_monoped.storage.server.address import Server, schema_for
 from pareto_monoped.storage.store import Store, create_database
 from pareto_monoped.study.audits import audit_front
 from pareto_monoped.study.interrupt import Interrupt
@@ -36,9 +33,6 @@ from pareto_monoped.study.simulator import (
     load_simulator,
     stored_simulator,
 )
-
-if TYPE_CHECKING:
-    from pareto_monoped.storage.server.lock import ServerLock
 
 
 def shared_anew(study: Study, evaluations: int | None) -> Study:
@@ -66,12 +60,11 @@ class RunSummary:
     """The result of a run."""
 
     db: StudyPlace  #: the study's database
-    #: evaluations, new_evaluations: number of trials in all, and of this session
-    evaluations: int
-    new_evaluations: int
+    evaluations: int  #: number of trials in all
+    new_evaluations: int  #: number of trials of this session
     front_size: int  #: number of designs on the front
     ill_conditioned: int  #: number of designs that failed their audit
-    hypervolume: float  #: of the front
+    hypervolume: float  #: hypervolume of the front
     hypervolume_unit: str  #: product of the objectives' units, such as "m J"
     seconds: float  #: duration of this session
     #: ``budget``, ``wall_time``, ``plateau``, ``exhausted`` (the algorithm has no more designs) or ``interrupted``
@@ -117,11 +110,11 @@ def run(
     """
     if seed is not None:
         study = replace(study, seed=seed)
-    if isinstance(db, Server) and db.schema is None:
-        db = db.of_schema(schema_for(study.name))
-    with locked(db) as lock:
+    db = storage_of(db).place_for(study.name)
+    storage = storage_of(db)
+    with storage.locked() as lock:
         threads = workers or cores()
-        if is_vacant(db):
+        if storage.is_vacant():
             lock.acknowledge(0)
             study = shared_anew(study, evaluations)
             require_functions(study.own_names, own.functions, _source(db))
@@ -171,7 +164,7 @@ def resume(
         DatabaseError: the file is not a study, is damaged, is in use by another process, or cannot be written.
     """
     read_study(db)
-    with locked(db) as lock:
+    with storage_of(db).locked() as lock:
         data = _checked(db, lock)
         simulator = stored_simulator(data, workers=workers or cores(), executor=executor)
         _refuse_changes(data, data.study, simulator, db)
@@ -180,16 +173,10 @@ def resume(
         return _go_on(db, data, data.study, simulator, budget, progress or _silent, notify or _silent, lock, own)
 
 
-def _checked(db: StudyPlace, lock: "Lock | ServerLock") -> StudyData:
+def _checked(db: StudyPlace, lock: StudyLock) -> StudyData:
     """The study, if it has everything that was safe when its last run was killed."""
     data = read_study(db)
-    if isinstance(lock, Lock) and isinstance(db, Path) and data.links < lock.before:
-        raise LostTrialsError(
-            f"study database {str(db)!r}: lacks the last {lock.before - data.links} transactions of a killed run, "
-            f"which were safe: its log {db.name + '-wal'!r} was deleted, or an older copy was put back; restore both, "
-            f"or delete {lock.path.name!r} to go on from here"
-        )
-    lock.acknowledge(data.links)
+    lock.confirm(data.links)
     return data
 
 
@@ -270,11 +257,11 @@ def _go_on(
     budget: int,
     progress: Callable[[Progress], object],
     notify: Callable[[str], None],
-    lock: "Lock | ServerLock",
+    lock: StudyLock,
     own: Own,
 ) -> RunSummary:
     if _nothing_left(data, study, budget):
-        if isinstance(db, Path) and any(Path(f"{db.resolve()}{end}").exists() for end in ("-wal", "-journal")):
+        if not storage_of(db).is_at_rest():
             # A kill at the very end has left a log; opening the study for writing makes it a single file again.
             with Store(db, study, lock=lock):
                 pass

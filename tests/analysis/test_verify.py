@@ -8,7 +8,7 @@ import pytest
 from pareto_monoped.analysis.verify import require_sound, verify
 from pareto_monoped.definition.study import study_from_dict
 from pareto_monoped.errors import DatabaseError
-from pareto_monoped.storage.connection import FileConnection
+from pareto_monoped.storage.file import FileConnection
 from pareto_monoped.storage.optuna_tables import stored_digest, trial_ids
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run

@@ -8,7 +8,7 @@ import optuna
 import pytest
 
 from pareto_monoped.errors import DatabaseError, OutputError
-from pareto_monoped.storage.arrival import is_vacant
+from pareto_monoped.storage.place import storage_of
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
 from tests.study.support import change, made_database, study_of
@@ -33,7 +33,7 @@ def opens(path):
 def test_a_file_that_a_reader_has_made_is_vacant_and_filled(tmp_path, ask):
     path = tmp_path / "s.db"
     ask(path)
-    assert is_vacant(path)
+    assert storage_of(path).is_vacant()
     there = path.stat().st_ino
     assert run(study_of(**SMALL), path, workers=1).evaluations == 10
     assert path.stat().st_ino == there
@@ -64,7 +64,7 @@ def test_a_database_that_holds_anything_is_left_alone(tmp_path, statements):
     path = tmp_path / "s.db"
     change(path, *statements)
     before = path.read_bytes()
-    assert not is_vacant(path)
+    assert not storage_of(path).is_vacant()
     with pytest.raises(DatabaseError, match="is not a study database"):
         run(study_of(**SMALL), path, workers=1)
     assert path.read_bytes() == before
@@ -73,20 +73,20 @@ def test_a_database_that_holds_anything_is_left_alone(tmp_path, statements):
 def test_a_study_and_damage_are_not_vacant(tmp_path):
     path = tmp_path / "s.db"
     made_database(path)
-    assert not is_vacant(path)
+    assert not storage_of(path).is_vacant()
     with pytest.raises((DatabaseError, OutputError)):
         made_database(path)
     assert len(read_study(path).trials) == 6
     path.write_bytes(path.read_bytes()[:5000])
-    assert not is_vacant(path)
+    assert not storage_of(path).is_vacant()
     path.write_text("name = 's'\n")
-    assert not is_vacant(path)
+    assert not storage_of(path).is_vacant()
 
 
 def test_a_reader_that_keeps_the_file_locked_is_told(tmp_path, monkeypatch):
     path = tmp_path / "s.db"
     path.touch()
-    monkeypatch.setattr("pareto_monoped.storage.arrival.READ_TIMEOUT_S", 0.2)
+    monkeypatch.setattr("pareto_monoped.storage.file.READ_TIMEOUT_S", 0.2)
     other = sqlite3.connect(path)
     other.execute("BEGIN IMMEDIATE")
     with pytest.raises(DatabaseError, match="is locked by another program"):

@@ -8,7 +8,7 @@ import sqlite3
 import pytest
 
 from pareto_monoped.errors import DatabaseError, DiskError
-from pareto_monoped.storage.database import translated
+from pareto_monoped.storage.place import storage_of
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.store import Store
 from tests.study.support import made_database, made_study
@@ -136,7 +136,7 @@ def test_a_database_that_another_program_holds(tmp_path, monkeypatch):
     made_database(path)
     connection = sqlite3.connect(path, isolation_level=None)
     connection.execute("BEGIN EXCLUSIVE")
-    monkeypatch.setattr("pareto_monoped.storage.database.READ_TIMEOUT_S", 0.1)
+    monkeypatch.setattr("pareto_monoped.storage.file.READ_TIMEOUT_S", 0.1)
     refused(path, ["is locked by another program"])
     connection.close()
 
@@ -156,7 +156,7 @@ def test_an_error_of_sqlite_that_optuna_has_wrapped_twice_is_told_as_what_it_is(
 
     full = sqlite3.OperationalError("database or disk is full")
     full.sqlite_errorcode = sqlite3.SQLITE_FULL
-    with pytest.raises(DiskError, match="the disk is full"), translated(tmp_path / "s.db"):
+    with pytest.raises(DiskError, match="the disk is full"), storage_of(tmp_path / "s.db").translated():
         raise StorageInternalError("commit") from OperationalError("COMMIT", {}, full)
-    with pytest.raises(StorageInternalError), translated(tmp_path / "s.db"):
+    with pytest.raises(StorageInternalError), storage_of(tmp_path / "s.db").translated():
         raise StorageInternalError("of another kind")

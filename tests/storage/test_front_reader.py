@@ -10,9 +10,9 @@ import pytest
 from pareto_monoped.analysis.verify import verify
 from pareto_monoped.design import in_use
 from pareto_monoped.errors import DatabaseError
-from pareto_monoped.storage.database import reading
 from pareto_monoped.storage.front_reader import read_front
 from pareto_monoped.storage.kept_front import kept_row
+from pareto_monoped.storage.place import storage_of
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.status import status
 from pareto_monoped.storage.store import Store
@@ -113,7 +113,7 @@ def assert_same_front(path):
 
 
 def kept_trials(path):
-    with reading(path) as connection:
+    with storage_of(path).reading() as connection:
         return sum(kept_row(connection)[1].values())
 
 

@@ -119,7 +119,7 @@ def test_the_process_that_holds_the_lock_heals_too(tmp_path, killer):
 
 def test_where_nothing_can_be_written_the_journal_is_named(tmp_path, killer, monkeypatch):
     path = hot(tmp_path, killer)
-    monkeypatch.setattr("pareto_monoped.storage.database._folder_writable", lambda path: False)
+    monkeypatch.setattr("pareto_monoped.storage.file._folder_writable", lambda path: False)
     with pytest.raises(DatabaseError, match=r"'s.db-journal' beside it, which must be rolled back; allow writing"):
         read_study(path)
     monkeypatch.undo()

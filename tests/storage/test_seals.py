@@ -9,10 +9,10 @@ import pytest
 
 from pareto_monoped.errors import DatabaseError, InputError
 from pareto_monoped.storage import reader, seals
-from pareto_monoped.storage.database import FORMAT
+from pareto_monoped.storage.base import FORMAT
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.store import Store
-from tests.study.support import UNSEALED, change, made_database, made_evaluations, made_generation, made_study
+from tests.study.support import change, made_database, made_evaluations, made_generation, made_study
 
 
 @pytest.fixture
@@ -113,37 +113,6 @@ def test_links_cut_off_at_the_end_are_missed(path):
     change(path, "DELETE FROM monoped_seals WHERE link > 2")
     with pytest.raises(DatabaseError, match=r"does not match|has no hash"):
         read_study(path)
-
-
-def test_a_study_of_format_1_gets_its_hash_when_it_goes_on(path):
-    change(path, *UNSEALED)
-    before = read_study(path)
-    assert not before.sealed
-    with Store(path, made_study()) as store:
-        store.add(made_generation(made_study(), 2, 6, made_evaluations([0.75], [8.5]), state={"after": 2}))
-    after = read_study(path)
-    assert after.sealed
-    assert after.trials[:6].equals(before.trials)
-    change(path, "UPDATE monoped_trials SET energy_j = energy_j + 1e-9 WHERE trial = 2 OR trial = 4")
-    with pytest.raises(DatabaseError, match="trial 4 does not match its hash"):
-        read_study(path)
-
-
-def test_a_study_of_format_1_with_trials_missing_gets_no_hash(path):
-    change(path, *UNSEALED, "DELETE FROM monoped_trials WHERE trial = 2")
-    with pytest.raises(DatabaseError, match="not numbered from 0 to 4"), Store(path, made_study()):
-        pass
-    assert not read_study(path).sealed
-
-
-def test_a_transaction_that_fails_leaves_no_link(path):
-    study = made_study()
-    one = made_evaluations([0.75], [8.5])
-    with Store(path, study) as store:
-        with pytest.raises(DatabaseError):
-            store.add(made_generation(study, 2, 5, one, state={}))  # trial 5 is there already
-        store.add(made_generation(study, 2, 6, one, state={}))
-    assert len(read_study(path).trials) == 7
 
 
 def test_the_kept_front_is_the_front(tmp_path):

@@ -1,6 +1,5 @@
 """One writer at a time: a second is refused, and a killed one blocks nobody."""
 
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -8,14 +7,10 @@ from pathlib import Path
 import pytest
 
 from pareto_monoped.definition.study import load_study
-from pareto_monoped.errors import DatabaseError
-from pareto_monoped.storage.lock import holder, locked
+from pareto_monoped.storage import server as server_storage
 from pareto_monoped.storage.reader import read_study
-from pareto_monoped.storage.server import lock as server_lock
-from pareto_monoped.storage.store import Store
 from pareto_monoped.study.run import resume, run
 from tests.study.same import assert_same_study
-from tests.study.support import made_database
 
 ROOT = Path(__file__).parents[3]
 TOML = 'name = "s"\nevaluations = {n}\naudit = false\nstrength = false\n[algorithm]\nname = "nsga2"\npopulation = 20\n'
@@ -24,31 +19,7 @@ TOML = 'name = "s"\nevaluations = {n}\naudit = false\nstrength = false\n[algorit
 @pytest.fixture
 def impatient(monkeypatch):
     """Nobody is being killed: whoever holds a lock keeps it."""
-    monkeypatch.setattr(server_lock, "_WAIT_S", 0.1)
-
-
-def test_a_second_run_is_refused_and_told_who_runs(cluster, place, impatient):
-    made_database(place)
-    assert holder(place) is None
-    with locked(place):
-        assert holder(place) == os.getpid()
-        words = rf"is being run by process {os.getpid()} on .*another schema"
-        with pytest.raises(DatabaseError, match=words), locked(place):
-            pass
-        with locked(place.of_schema("another")):  # other studies of the server go their own way
-            pass
-    assert holder(place) is None
-    with locked(place):
-        pass
-
-
-def test_a_run_whose_lock_is_lost_still_keeps_others_from_writing(cluster, place, impatient):
-    """The session that writes has a lock of its own."""
-    study, _ = made_database(place)
-    with Store(place, study), pytest.raises(DatabaseError, match="is being run by process"):
-        Store(place, study)
-    with Store(place, study):
-        pass
+    monkeypatch.setattr(server_storage, "_WAIT_S", 0.1)
 
 
 def test_killed_in_mid_run_and_resumed(cluster, tmp_path, place, address):

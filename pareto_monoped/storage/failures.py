@@ -1,13 +1,12 @@
-"""What PostgreSQL's errors mean to the user, in one line with a cure."""
+"""One line with a cure for each error of PostgreSQL."""
 
 import re
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 import psycopg
+from sqlalchemy.exc import PendingRollbackError
 
 from pareto_monoped.errors import DatabaseError, DiskError, ParetoMonopedError, ServerError
-from pareto_monoped.storage.server.address import Server
+from pareto_monoped.storage.place import Server
 
 _AWAY = ("57P01", "57P02", "57P03", "08000", "08001", "08003", "08004", "08006")
 """States of SQL: the server is shut down, starts, or has no connection."""
@@ -40,29 +39,30 @@ _AT_THE_DOOR = {
 """What a connection is refused with, for which libpq gives no state, in English as servers mostly speak."""
 
 
-def failure(server: Server, error: psycopg.Error, *, open_before: bool = False) -> ParetoMonopedError:
-    """The error of ours for one of psycopg's.
+def failure(server: Server, error: BaseException, *, open_before: bool = False) -> ParetoMonopedError:
+    """Return the error of ours for one of psycopg or SQLAlchemy.
 
     Args:
         server: the study.
         error: what happened.
         open_before: whether the connection had been open.
     """
-    text = said(error)
+    text = _said(error)
     start = f"study database {str(server)!r}: "
-    state = error.sqlstate
+    state = getattr(error, "sqlstate", None)
     if state in _STATES:
         kind, words = _STATES[state]
         return kind(start + words.format(text=text))
-    gone = isinstance(error, psycopg.OperationalError | psycopg.InterfaceError) and state is None
+    # A session that has ended is used no more by SQLAlchemy, which says so by an error of its own.
+    lost = (psycopg.OperationalError, psycopg.InterfaceError, PendingRollbackError)
+    gone = isinstance(error, lost) and state is None
     if state in _AWAY or (gone and open_before):
         return ServerError(
             f"{start}the server went away ({text}); start it and resume, all acknowledged trials are safe"
         )
     for pattern, words in _AT_THE_DOOR.items():
         if re.search(pattern, text):
-            message = start + words.format(text=text)
-            return DatabaseError(message)
+            return DatabaseError(start + words.format(text=text))
     if gone:
         return ServerError(f"{start}the server does not answer ({text}); start it, or check host and port")
     if isinstance(error, psycopg.ProgrammingError) and state is None:
@@ -70,25 +70,8 @@ def failure(server: Server, error: psycopg.Error, *, open_before: bool = False) 
     return DatabaseError(f"{start}cannot be used ({text}); restore a copy, or run the study again in another schema")
 
 
-def said(error: psycopg.Error) -> str:
-    """The first message of an error, on one line; libpq repeats itself for each address of a host."""
+def _said(error: BaseException) -> str:
+    """Return the first message of an error, on one line; libpq repeats itself for each address of a host."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     words = lines[0] if lines else type(error).__name__
     return words.removeprefix("connection failed: ").removeprefix("connection is bad: ").rstrip(":")
-
-
-@contextmanager
-def translated_there(server: Server) -> Iterator[None]:
-    """Turn errors of psycopg, also where SQLAlchemy has wrapped them for Optuna, into one clear error of ours."""
-    try:
-        yield
-    except psycopg.Error as error:
-        raise failure(server, error, open_before=True) from error
-    except Exception as error:
-        found: BaseException | None = error
-        while found is not None:
-            inner = getattr(found, "orig", None)  # of SQLAlchemy's errors
-            if isinstance(inner, psycopg.Error):
-                raise failure(server, inner, open_before=True) from error
-            found = found.__cause__
-        raise
