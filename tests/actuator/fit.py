@@ -1,6 +1,7 @@
 """Whether the parts of an actuator fit together, from radii and heights alone: rings of material in r and z."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import combinations
 
 import numpy as np
@@ -37,11 +38,18 @@ class Ring:
         )
 
 
+@lru_cache(maxsize=256)  # each part is compared with every other
+def reach_mm(shape: Shape) -> tuple[float, float]:
+    """Least and greatest distance from the axis."""
+    distances = np.concatenate([np.hypot(*points.T) for points in all_polygons([shape])])
+    return float(distances.min()), float(distances.max())
+
+
 def outer_mm(shape: Shape) -> float:
     if isinstance(shape, Circle):
         return float(shape.radius_mm)
     if isinstance(shape, Spread | Path):
-        return float(max(np.hypot(*points.T).max() for points in all_polygons([shape])))
+        return reach_mm(shape)[1]
     assert isinstance(shape, ExternalGear)
     return float(shape.tip_radius_mm)
 
@@ -61,7 +69,7 @@ def rings(part: Part) -> list[Ring]:
     for prism in part.prisms:
         r0, r1 = inner_mm(prism.holes), outer_mm(prism.outline)
         if isinstance(prism.outline, Spread):
-            r0 = float(min(np.hypot(*points.T).min() for points in all_polygons([prism.outline])))
+            r0 = reach_mm(prism.outline)[0]
         if part.pitch_radius_mm:
             r0, r1 = part.pitch_radius_mm - r1, part.pitch_radius_mm + r1
         found += [ring_of(part, prism, r0, r1, place) for place in part.places_mm]

@@ -25,13 +25,15 @@ def product(actuator_map):
 
 
 @pytest.fixture(scope="session")
-def exported(actuator_map, calibration, tmp_path_factory):
+def exported(actuator_map, calibration, made_once):
     """Case C with every format, its lengths off the grid of 0.1 mm and its ratios inside their intervals."""
     design = PAPER_CASES["C"].design.replace(
         {"thigh_length_m": 0.490037, "shank_length_m": 0.359962, "knee_ratio": 6.07, "hip_ratio": 4.031}
     )
-    folder = tmp_path_factory.mktemp("cad") / "case_c"
-    return export_design(design, actuator_map, calibration, folder, source={"case": "C"})
+    return made_once(
+        "export",
+        lambda place: export_design(design, actuator_map, calibration, place / "case_c", source={"case": "C"}),
+    )
 
 
 def pytest_collection_modifyitems(items):

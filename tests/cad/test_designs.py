@@ -33,7 +33,7 @@ def failures(product, arrays):
 
 @pytest.mark.parametrize(
     "numbers",
-    [pytest.param(numbers, marks=() if k in (2, 3) else pytest.mark.long) for k, numbers in enumerate(DESIGNS)],
+    [pytest.param(numbers, marks=() if k == 2 else pytest.mark.long) for k, numbers in enumerate(DESIGNS)],
     ids=lambda numbers: "-".join(f"{number:g}" for number in numbers),
 )
 def test_a_design_passes_every_check(actuator_map, numbers):
@@ -72,9 +72,8 @@ def test_a_robot_of_any_motor_is_exported(motor, calibration, tmp_path):
         assert {following for code, following in pairwise(codes) if code == "8"} == {"CUT", "NOTES"}
 
 
-@pytest.mark.parametrize(
-    "motor", [name if name == "U12" else pytest.param(name, marks=pytest.mark.long) for name in _MOTORS]
-)
+@pytest.mark.long
+@pytest.mark.parametrize("motor", _MOTORS)
 def test_a_robot_of_any_motor_passes_every_check(motor):
     knee_ratio, hip_ratio = _MOTORS[motor]
     design = PAPER_CASES["C"].design.replace({"thigh_length_m": 0.3, "knee_ratio": knee_ratio, "hip_ratio": hip_ratio})

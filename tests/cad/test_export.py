@@ -21,12 +21,6 @@ DESIGN = PAPER_CASES["nominal"].design
 LIGHT = ("dxf", "3mf")
 
 
-@pytest.fixture
-def quick(monkeypatch):
-    """Leave out the checks, which have tests of their own."""
-    monkeypatch.setattr(export, "run_checks", lambda *_, **__: ())
-
-
 def contents(folder):
     return {str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
@@ -41,7 +35,7 @@ def test_as_built_rounds_lengths_and_takes_the_gearbox_s_ratio(actuator_map):
     assert as_built(built, actuator_map) == built
 
 
-def test_same_design_same_bytes_and_force_replaces_only_our_own_files(quick, actuator_map, calibration, tmp_path):
+def test_same_design_same_bytes_and_force_replaces_only_our_own_files(unchecked, actuator_map, calibration, tmp_path):
     folder = tmp_path / "robot"
     export_design(DESIGN, actuator_map, calibration, folder, formats=LIGHT)
     first = contents(folder)
@@ -61,7 +55,7 @@ def test_same_design_same_bytes_and_force_replaces_only_our_own_files(quick, act
     assert [path.name for path in tmp_path.iterdir()] == ["robot"]
 
 
-def test_python_collects_as_before_after_an_export(quick, monkeypatch, actuator_map, calibration, tmp_path):
+def test_python_collects_as_before_after_an_export(unchecked, monkeypatch, actuator_map, calibration, tmp_path):
     before = gc.get_threshold()
     seen = []
     monkeypatch.setattr(export, "built_of", lambda *_, **__: seen.append(gc.get_threshold()) or 1 / 0)
@@ -71,7 +65,7 @@ def test_python_collects_as_before_after_an_export(quick, monkeypatch, actuator_
     assert gc.get_threshold() == before
 
 
-def test_a_record_cannot_make_force_delete_outside_the_folder(quick, actuator_map, calibration, tmp_path):
+def test_a_record_cannot_make_force_delete_outside_the_folder(unchecked, actuator_map, calibration, tmp_path):
     outside = tmp_path / "precious.txt"
     outside.write_text("keep me")
     folder = tmp_path / "robot"
@@ -97,7 +91,7 @@ def test_a_failed_check_names_the_parts_and_writes_nothing(monkeypatch, actuator
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_failure_while_writing_leaves_nothing(quick, monkeypatch, actuator_map, calibration, tmp_path):
+def test_a_failure_while_writing_leaves_nothing(unchecked, monkeypatch, actuator_map, calibration, tmp_path):
     def full(*_):
         raise OSError(28, "No space left on device")
 
@@ -137,7 +131,7 @@ def test_the_time_left_is_that_of_the_rest_at_the_mean_speed():
     assert dataclasses.replace(progress, made=20).left_s == 0.0
 
 
-def test_a_batch_leaves_alone_what_is_made(quick, actuator_map, calibration, tmp_path):
+def test_a_batch_leaves_alone_what_is_made(unchecked, actuator_map, calibration, tmp_path):
     job = jobs.Job(
         design=DESIGN,
         motor=actuator_map.motor,

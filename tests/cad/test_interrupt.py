@@ -13,7 +13,7 @@ import pytest
 
 from pareto_monoped.cad.write.folder import beside, move_in, noted, unbroken, without_unfinished, write
 
-EXPORT = [sys.executable, "-m", "pareto_monoped", "export", "--case", "C", "-o"]
+EXPORT = [sys.executable, "-m", "pareto_monoped", "export", "--case", "C", "--formats", "step", "-o"]
 PATIENCE_S = 300.0
 """For a machine that is busy with other things; what is tested ends in a second or never."""
 
@@ -42,7 +42,15 @@ needs_proc = pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="ne
 
 
 @needs_proc
-@pytest.mark.parametrize("phase", ["building", "simulating", "checking", "writing"])
+@pytest.mark.parametrize(
+    "phase",
+    [
+        "building",
+        pytest.param("simulating", marks=pytest.mark.long),
+        pytest.param("checking", marks=pytest.mark.long),
+        "writing",
+    ],
+)
 def test_an_interrupt_in_any_phase_leaves_nothing(phase, tmp_path):
     """The kernel is stopped, so that whoever waits for it waits for ever."""
     with subprocess.Popen([*EXPORT, tmp_path / "c"], stderr=subprocess.PIPE, text=True) as export:

@@ -135,6 +135,7 @@ def test_nobody_asked_and_every_file_says_so(actuator_map, calibration, tmp_path
     assert min(float(row["factor_over_required"]) for row in rows_of(made.folder)) < 1.0
 
 
+@pytest.mark.usefixtures("unchecked")
 def test_gears_that_are_struck_too_hard_in_every_jump_are_told_of_and_not_refused(actuator_map, calibration, tmp_path):
     """The paper's nominal design: its gears hold each jump, and not all jumps of their duty."""
     made = export_design(
@@ -192,11 +193,11 @@ def test_jobs_ask_as_their_study_did(tmp_path, monkeypatch):
 
 
 def test_no_design_of_a_front_under_strength_is_refused(tmp_path, monkeypatch, calibration):
-    """Fifty designs over the front, as built: rounding their lengths moves no factor by more than the check allows."""
+    """Twenty designs over the front, as built: rounding their lengths moves no factor by more than the check allows."""
     monkeypatch.chdir(tmp_path)
     values = {
         "name": "front",
-        "evaluations": 800,
+        "evaluations": 400,
         "strength": True,
         "audit": False,
         "variables": {
@@ -208,8 +209,8 @@ def test_no_design_of_a_front_under_strength_is_refused(tmp_path, monkeypatch, c
     run(study_from_dict(values, source="test"), tmp_path / "front.db")
     data = read_study(tmp_path / "front.db")
     front = data.front()
-    assert len(front) >= 20
-    spread = front.iloc[np.unique(np.linspace(0, len(front) - 1, 50).round().astype(int))]
+    assert len(front) >= 15
+    spread = front.iloc[np.unique(np.linspace(0, len(front) - 1, 20).round().astype(int))]
     designs = [Design.from_array(row) for row in spread[list(NAMES)].to_numpy()]
     stored = array_factors([d.as_array() for d in designs], data.case_kit, calibration)
     required = np.array([joint.required for joint in TABLE])

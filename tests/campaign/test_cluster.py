@@ -52,7 +52,7 @@ def test_a_campaign_that_has_ended_needs_no_scheduler(tmp_path):
 def test_as_many_studies_run_as_the_scheduler_has_threads(tmp_path, monkeypatch):
     """It was as many as the coordinator has cores."""
     monkeypatch.setattr("pareto_monoped.campaign.coordinator.cores_here", lambda: 1)
-    several, most = standings(tmp_path, "seeds = [1, 2, 3]", SMALL.replace("40", "20")), []
+    several, most = standings(tmp_path, "seeds = [1, 2]", SMALL.replace("40", "20")), []
     with DaskHere(tmp_path) as here:
         here.workers += [here.add(threads=2)]
         until(lambda: threads_of(here.address) == 2)

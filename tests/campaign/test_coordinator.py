@@ -92,7 +92,8 @@ class Killer:
             os.kill(self.pids[-1], signal.SIGKILL)
 
 
-@pytest.mark.parametrize(("times", "state"), [(1, "finished"), (2, "failed")])
+# Killed once and finished, another is in test_kill.py every time.
+@pytest.mark.parametrize(("times", "state"), [pytest.param(1, "finished", marks=pytest.mark.long), (2, "failed")])
 def test_a_killed_worker_is_replaced_once(tmp_path, monkeypatch, times, state):
     (one,) = standings(tmp_path, "evaluations = [80]")
     killer = Killer(monkeypatch, times)

@@ -51,6 +51,7 @@ def test_bad_requests_are_one_line_and_write_nothing(capsys, tmp_path, monkeypat
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.usefixtures("unchecked")
 def test_why_a_design_was_picked_is_said_in_lines_that_fit_a_terminal(capsys, tmp_path):
     code, _, err = run(capsys, "export", STORED, "--knee", "--formats", "dxf", "-o", tmp_path / "knee")
     assert code == 0
@@ -77,7 +78,7 @@ def test_a_case_of_the_paper_is_exported(capsys, tmp_path):
     assert all(check["passed"] for check in json.loads((folder / "checks.json").read_text()))
 
 
-@pytest.mark.parametrize(("hip", "knee"), [("U8", "VT8020"), ("U12", "MN8014")])
+@pytest.mark.parametrize(("hip", "knee"), [("U8", "VT8020"), pytest.param("U12", "MN8014", marks=pytest.mark.long)])
 def test_a_case_is_exported_with_different_motors_and_again_from_its_record(capsys, tmp_path, hip, knee):
     """All checks of the machine hold: sweep, overlap, seats, watertight parts, masses."""
     words = ("export", "--case", "C", "--hip-motor", hip, "--knee-motor", knee, "--no-strength", "--formats", "dxf")
@@ -94,6 +95,7 @@ def test_a_case_is_exported_with_different_motors_and_again_from_its_record(caps
             assert (tmp_path / "two" / path.relative_to(tmp_path / "one")).read_bytes() == path.read_bytes()
 
 
+@pytest.mark.usefixtures("unchecked")
 def test_a_motor_named_for_both_joints_is_exported_as_one(capsys, tmp_path):
     """Byte for byte."""
     for folder, words in (("one", ("--motor", "U8")), ("both", ("--hip-motor", "U8", "--knee-motor", "u8"))):
@@ -167,6 +169,7 @@ def test_a_front_is_exported_in_parallel_stopped_and_continued(tmp_path):
     assert {name: (folder / name / "design.json").stat().st_mtime_ns for name in before} == before
 
 
+@pytest.mark.usefixtures("unchecked")
 def test_drawings_can_be_left_out(capsys, tmp_path):
     folder = tmp_path / "case"
     code, _, _ = run(capsys, "export", "--case", "C", "--formats", "dxf,pdf", "--no-drawings", "-o", folder)

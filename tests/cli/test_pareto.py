@@ -4,6 +4,7 @@ import csv
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -16,11 +17,12 @@ from pareto_monoped.pareto.selectors import Knee
 from pareto_monoped.storage.reader import read_study
 
 ROOT = Path(__file__).parents[2]
+WORDS = [sys.executable, "-m", "pareto_monoped", "pareto", "studies/quick.toml", "--evaluations", "160"]
 
 
 def pareto(folder: Path) -> subprocess.CompletedProcess:
     return subprocess.run(
-        [sys.executable, "-m", "pareto_monoped", "pareto", "studies/quick.toml", "--evaluations", "160"],
+        WORDS,
         cwd=folder,
         env=os.environ | {"COLUMNS": "80"},
         capture_output=True,
@@ -133,6 +135,24 @@ class TestMainJob:
         assert len(read_study(folder / "studies" / "quick_battery.db").trials) == 160
         assert changed <= {"actuators.csv"}
 
+    def test_a_stale_export_of_the_knee_is_begun_again(self, job):
+        """And stopped there: it is left as it was."""
+        folder, _ = job
+        (design,) = (folder / "reports" / "quick" / "cad").iterdir()
+        text = (design / "design.json").read_text()
+        stale = text.replace('"kv_rpm_per_v": ', '"kv_rpm_per_v": 1')
+        (design / "design.json").write_text(stale)
+        with subprocess.Popen(WORDS, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as again:
+            step = next(line for line in again.stderr if line.startswith("[4/5]"))
+            next(line for line in again.stderr if line.startswith("building"))
+            again.send_signal(signal.SIGINT)
+            assert "interrupted" in again.stderr.read()
+        assert step.endswith(" --force\n")
+        assert again.returncode == 130
+        assert (design / "design.json").read_text() == stale
+        (design / "design.json").write_text(text)
+
+    @pytest.mark.long
     def test_a_stale_export_of_the_knee_is_made_again(self, job):
         folder, _ = job
         (design,) = (folder / "reports" / "quick" / "cad").iterdir()
@@ -145,6 +165,19 @@ class TestMainJob:
         assert (design / "design.json").read_text() == text
 
 
+def test_a_study_of_other_objectives_goes_from_one_front_to_its_cad(tmp_path):
+    (tmp_path / "studies").mkdir()
+    (tmp_path / "studies" / "quick.toml").write_text(
+        'name = "quick"\nevaluations = 40\naudit = false\nobjectives = ["height_m", "mass_kg"]\n'
+    )
+    with subprocess.Popen(WORDS, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as job:
+        assert any(line.startswith("[3/4] pareto-monoped export studies/quick.db") for line in job.stderr)
+        job.send_signal(signal.SIGINT)
+        job.stderr.read()
+    assert [path.name for path in (tmp_path / "studies").glob("*.db")] == ["quick.db"]
+
+
+@pytest.mark.long
 def test_a_study_of_other_objectives_has_one_front(tmp_path):
     (tmp_path / "studies").mkdir()
     (tmp_path / "studies" / "quick.toml").write_text(

@@ -4,6 +4,7 @@ Both get the same numbers: masses, centres, inertias, gearboxes, motors, stops a
 """
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -69,8 +70,11 @@ def machine(robots, i, design, calibration):
     )
 
 
-def by_hand(designs, calibration):
+@cache
+def by_hand(which):
     """Height in m, mechanical energy and energy at the battery in J, one row per design."""
+    designs, changes = JUMPS[which]
+    calibration = timed(**changes)
     robots = robot_arrays(designs, map_for("VT8020"))
     machines = [machine(robots, i, dict(zip(NAMES, row, strict=True)), calibration) for i, row in enumerate(designs)]
     return np.array([planar.jump(m, planar.standing(m)) for m in machines]).T
@@ -87,7 +91,7 @@ JUMPS = {
 def compared(which, *, height_m, share, **fine):
     """Jump by hand and by package; the energies agree within a share."""
     designs, changes = JUMPS[which]
-    height, energy, battery = by_hand(designs, timed(**changes))
+    height, energy, battery = by_hand(which)
     found = Evaluator(map_for("VT8020"), timed(**changes, **fine))(designs)
     np.testing.assert_allclose(found.height_m, height, atol=height_m, rtol=0.0)
     np.testing.assert_allclose(found.energy_j, energy, rtol=share)

@@ -140,9 +140,9 @@ def test_kinetic_energy_is_the_sum_over_all_parts(motor):
             expected = sum(part_energies(robot, leg, data.qpos, data.qvel))
             assert energy == pytest.approx(expected, rel=1e-9)
             tried += 1
-        if tried >= 170:  # six motors: more than a thousand states
+        if tried >= 60:  # three robots of each motor
             break
-    assert tried >= 170
+    assert tried >= 60
 
 
 FINE = replace(ABSOLUTE, simulation=replace(ABSOLUTE.simulation, timestep_s=1e-4, control_period_s=1e-3))

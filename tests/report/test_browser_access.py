@@ -25,9 +25,17 @@ def file(folder, source, source_u12):
     return made
 
 
-@pytest.mark.parametrize("view", VIEWS)
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize(("width", "height"), [(1440, 900), (390, 844)])
+SIZES, SCHEMES = ((1440, 900), (390, 844)), ("light", "dark")
+# Every two of size, colours and view together once; the other half takes longer tests.
+LOOKS = [
+    pytest.param(*size, scheme, view, marks=() if (i + j + (view == "conditions")) % 2 == 0 else pytest.mark.long)
+    for i, size in enumerate(SIZES)
+    for j, scheme in enumerate(SCHEMES)
+    for view in VIEWS
+]
+
+
+@pytest.mark.parametrize(("width", "height", "scheme", "view"), LOOKS)
 def test_axe_finds_nothing_serious(file, browser, width, height, scheme, view):
     tab = Tab(browser, file, width=width, height=height, color_scheme=scheme, fragment=VIEWS[view])
     tab.scroll_through()

@@ -117,7 +117,8 @@ def test_through_a_link_it_is_the_same_study(tmp_path):
                 pass
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+# Both in any command: tests/cli/test_process.py.
+@pytest.mark.parametrize("number", [signal.SIGTERM, pytest.param(signal.SIGHUP, marks=pytest.mark.long)])
 def test_other_signals_end_it_as_ctrl_c_does(tmp_path, number):
     toml = tmp_path / "s.toml"
     toml.write_text('name = "s"\nevaluations = 100000\naudit = false\n')

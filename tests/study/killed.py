@@ -15,10 +15,8 @@ import time
 from pathlib import Path
 
 from pareto_monoped.definition.study import load_study
-from pareto_monoped.search.registry import make_algorithm
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
-from pareto_monoped.study.simulator import load_simulator
 
 
 def start(study, db, workers):
@@ -68,12 +66,11 @@ def kill(study, db, workers, delay, *, at_work):
 
 def main():
     kills, generator = int(sys.argv[1]), random.Random(int(sys.argv[2]))
-    # Compiled code is loaded once, here; a single worker leaves no thread behind that a fork would lose.
-    load_simulator(load_study(Path(sys.argv[3]) / "s.toml"), workers=1).probe()
     reports = []
     for folder in map(Path, sys.argv[3:]):
         study = load_study(folder / "s.toml")
-        make_algorithm(study)
+        # All modules and compiled code are loaded once, here; a single worker leaves no thread that a fork would lose.
+        run(study, folder / "loading.db", workers=1, evaluations=1)
         starting, working = whole(study, folder / "whole.db")
         db, report = folder / "killed.db", []
         for k in range(kills):

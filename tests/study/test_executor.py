@@ -73,21 +73,27 @@ def on_threads(tmp_path_factory):
     return db
 
 
-def test_on_two_processes(on_threads, tmp_path):
+@pytest.fixture(scope="module")
+def two_processes():
+    """Their executor, and what it has told."""
     told = []
     with processes(2, tell=told.append) as crew:
-        whole(tmp_path / "s.db", crew)
+        yield crew, told
+
+
+def test_on_two_processes(on_threads, two_processes, tmp_path):
+    crew, told = two_processes
+    whole(tmp_path / "s.db", crew)
     assert_same_study(on_threads, tmp_path / "s.db")
     assert told == []
 
 
-def test_the_default_search_on_two_processes(tmp_path):
+def test_the_default_search_on_two_processes(two_processes, tmp_path):
     """Its model is made here; only what it proposes jumps elsewhere."""
     study = study_of(name="s", evaluations=60, algorithm={"name": "surrogate", "population": 20}, audit=False)
     run(study, tmp_path / "threads.db", workers=2)
-    with processes(2) as crew:
-        counting = Counting(crew)
-        run(study, tmp_path / "s.db", workers=2, executor=counting)
+    counting = Counting(two_processes[0])
+    run(study, tmp_path / "s.db", workers=2, executor=counting)
     assert counting.functions == {shared.jumps_of}
     assert_same_study(tmp_path / "threads.db", tmp_path / "s.db")
 

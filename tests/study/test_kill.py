@@ -15,12 +15,30 @@ NSGA2 = 'name = "nsga2"\npopulation = 20'
 SURROGATE = 'name = "surrogate"\npopulation = 20\ndrawn_generations = 2'
 
 
-def killed(folder, algorithms, evaluations, kills, seed=3, variables="", top=""):
-    """Runs tests/study/killed.py; checks everything that must hold after each kill and at the end."""
-    folders = [folder / str(k) for k in range(len(algorithms))]
-    for place, algorithm in zip(folders, algorithms, strict=True):
+BATTERY = 'objectives = ["height_m", "electrical_energy_j"]\n'
+THREE = 'objectives = ["height_m", "electrical_energy_j", "mass_kg"]\n[constraints]\nmass_kg = { max = 4.6 }\n'
+MOTORS = 'motor = ["VT8020", "U8", "MN8014"]\n'
+PAIRS = 'hip_motor = ["VT8020", "U8"]\nknee_motor = ["U8", "MN8014"]\n'
+OPTIONAL = "[variables]\nknee_release_rad = { lower = 0.0, upper = 0.6 }\nrest_length_m = { lower = 2, upper = 12 }\n"
+EVERY = ("nsga2", "sms_emoa", "age_moea2", "surrogate", "optuna_nsga2", "optuna_tpe", "random")
+SHORT = {
+    "nsga2": (NSGA2, ""),
+    "weighted": (WEIGHTED, ""),
+    "surrogate": (SURROGATE, ""),
+    "optional variables": (NSGA2, OPTIONAL),
+    "battery": (WEIGHTED, BATTERY),
+    "three objectives": ('name = "sms_emoa"\npopulation = 20', THREE),
+    "motors": (SURROGATE, MOTORS + THREE),
+}
+"""Studies of 240 evaluations that one script kills three times each."""
+
+
+def kill_all(folder, studies, evaluations, kills, seed=3):
+    """Runs tests/study/killed.py on studies (algorithm, beginning of the file); their folders and reports."""
+    folders = [folder / str(k) for k in range(len(studies))]
+    for place, (algorithm, top) in zip(folders, studies, strict=True):
         place.mkdir()
-        text = f'name = "s"\nevaluations = {evaluations}\naudit = false\n{top}{variables}[algorithm]\n{algorithm}\n'
+        text = f'name = "s"\nevaluations = {evaluations}\naudit = false\n{top}[algorithm]\n{algorithm}\n'
         (place / "s.toml").write_text(text)
     done = subprocess.run(
         [sys.executable, "-m", "tests.study.killed", str(kills), str(seed), *map(str, folders)],
@@ -29,59 +47,50 @@ def killed(folder, algorithms, evaluations, kills, seed=3, variables="", top="")
         cwd=ROOT,
     )
     assert done.returncode == 0, done.stderr
-    for place, report in zip(folders, json.loads(done.stdout), strict=True):
-        assert len(report) == kills
-        for kill in report:
-            assert kill["sound"] == "ok"
-            assert kill["stored"] >= kill["acknowledged"]
-        # Some kills must have come while it was at work, or this shows nothing.
-        assert any(0 < kill["stored"] < evaluations and kill["code"] == -9 for kill in report)
-        whole, resumed = read_study(place / "whole.db"), read_study(place / "killed.db")
-        assert resumed.trials.equals(whole.trials)
-        assert resumed.front().equals(whole.front())
-        assert resumed.checkpoint == whole.checkpoint
-        assert resumed.meta.hash == whole.meta.hash
-        assert resumed.history["hypervolume"].equals(whole.history["hypervolume"])
+    return list(zip(folders, json.loads(done.stdout), strict=True))
 
 
-def test_killed_three_times(tmp_path):
-    killed(tmp_path, [NSGA2, WEIGHTED, SURROGATE], evaluations=240, kills=3)
+def check(place, report, evaluations, kills):
+    """Everything that must hold after each kill and at the end."""
+    assert len(report) == kills
+    for kill in report:
+        assert kill["sound"] == "ok"
+        assert kill["stored"] >= kill["acknowledged"]
+    # Some kills must have come while it was at work, or this shows nothing.
+    assert any(0 < kill["stored"] < evaluations and kill["code"] == -9 for kill in report)
+    whole, resumed = read_study(place / "whole.db"), read_study(place / "killed.db")
+    assert resumed.trials.equals(whole.trials)
+    assert resumed.front().equals(whole.front())
+    assert resumed.checkpoint == whole.checkpoint
+    assert resumed.meta.hash == whole.meta.hash
+    assert resumed.history["hypervolume"].equals(whole.history["hypervolume"])
 
 
-def test_killed_with_optional_variables_free(tmp_path):
-    variables = (
-        "[variables]\nknee_release_rad = { lower = 0.0, upper = 0.6 }\nrest_length_m = { lower = 2, upper = 12 }\n"
-    )
-    killed(tmp_path, [NSGA2], evaluations=240, kills=3, variables=variables)
-    assert read_study(tmp_path / "0" / "whole.db").trials["knee_release_rad"].nunique() > 100
+def killed(folder, algorithms, evaluations, kills, top=""):
+    for place, report in kill_all(folder, [(algorithm, top) for algorithm in algorithms], evaluations, kills):
+        check(place, report, evaluations, kills)
 
 
-BATTERY = 'objectives = ["height_m", "electrical_energy_j"]\n'
-THREE = 'objectives = ["height_m", "electrical_energy_j", "mass_kg"]\n[constraints]\nmass_kg = { max = 4.6 }\n'
+@pytest.fixture(scope="module")
+def three_times(tmp_path_factory):
+    found = kill_all(tmp_path_factory.mktemp("killed"), list(SHORT.values()), evaluations=240, kills=3)
+    return dict(zip(SHORT, found, strict=True))
 
 
-def test_killed_with_other_objectives(tmp_path):
-    killed(tmp_path, [NSGA2, WEIGHTED], evaluations=240, kills=3, top=BATTERY)
+@pytest.mark.parametrize("name", SHORT)
+def test_killed_three_times(three_times, name):
+    check(*three_times[name], evaluations=240, kills=3)
 
 
-def test_killed_with_three_objectives_and_a_constraint(tmp_path):
-    killed(tmp_path, ['name = "sms_emoa"\npopulation = 20', SURROGATE], evaluations=240, kills=3, top=THREE)
-    data = read_study(tmp_path / "0" / "killed.db")
-    assert data.study.objectives.names == ("height_m", "electrical_energy_j", "mass_kg")
-    assert (data.trials["mass_kg"] > 4.6).any()
-    assert (data.front()["mass_kg"] <= 4.6).all()
-
-
-MOTORS = 'motor = ["VT8020", "U8", "MN8014"]\n'
-PAIRS = 'hip_motor = ["VT8020", "U8"]\nknee_motor = ["U8", "MN8014"]\n'
-EVERY = ("nsga2", "sms_emoa", "age_moea2", "surrogate", "optuna_nsga2", "optuna_tpe", "random")
-
-
-def test_killed_with_motors_three_objectives_and_a_constraint(tmp_path):
-    killed(tmp_path, ['name = "sms_emoa"\npopulation = 20', SURROGATE], evaluations=240, kills=3, top=MOTORS + THREE)
-    data = read_study(tmp_path / "1" / "killed.db")
-    assert data.trials["motor"].nunique() == 3
-    assert (data.trials["mass_kg"] > 4.6).any()
+def test_the_killed_studies_are_what_their_names_say(three_times):
+    data = {name: read_study(place / "killed.db") for name, (place, _) in three_times.items()}
+    assert data["optional variables"].trials["knee_release_rad"].nunique() > 100
+    assert data["battery"].study.objectives.names == ("height_m", "electrical_energy_j")
+    assert data["motors"].trials["motor"].nunique() == 3
+    for name in ("three objectives", "motors"):
+        assert data[name].study.objectives.names == ("height_m", "electrical_energy_j", "mass_kg")
+        assert (data[name].trials["mass_kg"] > 4.6).any()
+        assert (data[name].front()["mass_kg"] <= 4.6).all()
 
 
 @pytest.mark.long

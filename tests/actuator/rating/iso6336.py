@@ -36,16 +36,15 @@ def inv(angle):
 
 
 def bisect(function, low, high):
-    """Root of a function that changes its sign between two places."""
+    """Root of a function that changes its sign between two places, to the last bit."""
     below = function(low) > 0.0
     assert below != (function(high) > 0.0)
-    for _ in range(200):
-        middle = 0.5 * (low + high)
+    while low < (middle := 0.5 * (low + high)) < high:
         if (function(middle) > 0.0) == below:
             low = middle
         else:
             high = middle
-    return 0.5 * (low + high)
+    return middle
 
 
 @dataclass(frozen=True)
@@ -82,6 +81,7 @@ def line_of_action(pinion, wheel, distance):
     return sqrt(distance**2 - both**2)
 
 
+@cache  # loops over modules, numbers of planets and face widths ask again and again
 def shifted(zs, zp, zr, y, x):
     """Sun, planet and ring without backlash at a centre distance (zs + zp) / 2 + y, the sun shifted by x."""
     distance = (zs + zp) / 2.0 + y
@@ -269,7 +269,7 @@ def web_section(planets, r_pin, planet_tip, ring_tip, data, carrier, slices=2000
     def free(radius):
         """Angle from the middle of the gap to where a circle around the axis enters the planet's clearance."""
         cosine = (radius**2 + r_pin**2 - keep**2) / (2.0 * radius * r_pin)
-        return half - float(np.arccos(min(max(cosine, -1.0), 1.0)))
+        return half - np.arccos(np.clip(cosine, -1.0, 1.0))
 
     def gap(x):
         """Half the gap between the planets at a distance x from the axis."""
@@ -287,7 +287,7 @@ def web_section(planets, r_pin, planet_tip, ring_tip, data, carrier, slices=2000
     edges = np.linspace(inner, outer, slices + 1)
     rings = 0.5 * (edges[1:] + edges[:-1])
     width = edges[1] - edges[0]
-    reach = np.array([min(free(radius), float(np.arccos(inner / radius))) for radius in rings])
+    reach = np.minimum(free(rings), np.arccos(inner / rings))
     area = float(np.sum(2.0 * rings * reach) * width)
     second = float(np.sum(rings**3 * (reach - np.sin(reach) * np.cos(reach))) * width)
     return area, second
@@ -323,7 +323,7 @@ def pin_tilt(force, width, gap, diameter, stiffness, web):
     return float(np.linalg.solve(whole[np.ix_(free, free)], loads)[1])
 
 
-def sun_lag(load, width, diameter, planets, slices=20000):
+def sun_lag(load, width, diameter, planets, slices=500):
     """How far the pitch circle of the sun's far end lags behind that of the driven end, summed slice by slice."""
     polar, shear = pi * diameter**4 / 32.0, E_STEEL / (2.0 * (1.0 + NU_STEEL))
     x = (np.arange(slices) + 0.5) / slices * width

@@ -247,6 +247,8 @@ def test_ways_and_keys_are_free_when_tried_with_meshes(planned):
                     for moving in solids(addition.members):
                         moved = moving.translate(way)
                         for other in solids(there - limp):
+                            if apart(moved, other):
+                                continue
                             common = moved ^ other
                             assert common.volume() <= 0.02 * max(common.surface_area(), 1.0) + 0.5, step.number
                 tried += 1
@@ -274,4 +276,10 @@ def key_is_free(instance, body, others):
     start = y1 + 0.2 if up else y0 - 0.2 - reach
     key = key.translate((0.5 * (x0 + x1), start, 0.5 * (z0 + z1)))
     for other in others:
-        assert (key ^ other).volume() < 1.0, instance.name
+        assert apart(key, other) or (key ^ other).volume() < 1.0, instance.name
+
+
+def apart(one, other):
+    """Whether two bodies' bounding boxes do not meet."""
+    first, second = (np.reshape(body.bounding_box(), (2, 3)) for body in (one, other))
+    return bool((first[0] > second[1]).any() or (second[0] > first[1]).any())
