@@ -4,18 +4,14 @@ import numpy as np
 
 from pareto_monoped.actuator.external_housing import BACK_BORE_MM, housing_parts
 from pareto_monoped.actuator.features import (
-    END_PLAY_MM,
     MOTOR_TAPPED_HOLE_MM,
+    coupling_dowels,
+    coupling_part,
     encoder_parts,
-    gear_accuracy,
-    gear_grade,
-    gear_note,
-    made,
     motor_holes,
-    rated_teeth,
     shaft_end,
     slab,
-    spline_teeth,
+    sun_part,
     tube,
 )
 from pareto_monoped.actuator.front import carrier_parts, gear_parts
@@ -25,18 +21,13 @@ from pareto_monoped.actuator.layout import (
     ExternalLayout,
     Layout,
     external_layout,
-    hub_note,
-    spline_note,
 )
 from pareto_monoped.actuator.motor import HolePattern, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.geometry.dowels import dowel_part
-from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import Screw, clearance, screw_for, screw_part
 from pareto_monoped.geometry.shapes import Pattern
-from pareto_monoped.materials import ALLOYS
 
 _MOTOR_THREAD_MM = 5.0
 """How deep screws go into the base of a framed motor: M5 x 8 through the backplate."""
@@ -79,65 +70,38 @@ def external_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
 
 def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
     """Build what turns with the motor: the sun in one piece with its splined shaft, the coupling, and its dowels."""
-    data, materials = settings.parts, settings.materials
-    output = _output(motor)
-    through = _rotor_holes(output, _ROTOR_HOLE_MM)
+    data, output, dowels = settings.parts, _output(motor), _dowel_holes(motor)
+    spline, screw, through = data.spline.external, _output_screw(output), _rotor_holes(output, _ROTOR_HOLE_MM)
     r_coupling = 0.5 * output.pitch_circle_mm + max(
-        0.5 * output.diameter_mm + data.coupling.rim_mm - _RIM_LESS_MM, _output_screw(output).countersunk + _HEAD_RIM_MM
+        0.5 * output.diameter_mm + data.coupling.rim_mm - _RIM_LESS_MM, screw.countersunk + _HEAD_RIM_MM
     )
-    spline = data.spline.external
-    teeth = at.gears.sun(settings.tooth_thinning_mm(at.gears.module_mm))
+    windows = _coupling_windows(float(spline.tip_radius_mm), output)
     return (
-        Part(
-            name="sun",
-            role=Role.GEAR,
-            visibility=Visibility.INSIDE,
-            material=materials.gear_steel,
-            prisms=(
-                *slab(shell.neck.z, -END_PLAY_MM, shell.neck.r_journal),
-                *slab(at.z_gear_front, shell.neck.z, shell.neck.r),
-                *slab(at.z_gear_back, at.z_gear_front, teeth),
+        sun_part(
+            at,
+            shell.neck,
+            settings,
+            spline,
+            data.spline.sun_shaft_radius_mm,
+            behind=(
                 *slab(shell.z_coupling, at.z_gear_back, data.spline.sun_shaft_radius_mm),
                 *slab(shell.z_motor, shell.z_coupling, spline),
             ),
-            process="machined",
-            group=Group.ROTOR,
-            grade=gear_grade(settings, settings.gear_steels.sun),
-            accuracy_class=gear_accuracy(settings),
-            teeth=made(
-                rated_teeth(at.gears.sun(), settings.gear_steels.sun, settings, at.gears.planet()),
-                spline_teeth(spline, settings),
-            ),
-            fits=(Fit(diameter_mm=2.0 * shell.neck.r_journal, zone="h6", seat=True),),
-            note=f"one piece with its shaft, {spline_note(spline, data.spline.sun_shaft_radius_mm)}; "
-            + gear_note(teeth, settings),
-            joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling"),
         ),
-        Part(
-            name="coupling",
-            role=Role.COUPLING,
-            visibility=Visibility.INSIDE,
-            material=materials.aluminium,
-            prisms=slab(
-                shell.z_motor,
-                shell.z_coupling,
-                r_coupling,
-                spline,
-                through,
-                _dowel_holes(motor),
-                *_coupling_windows(float(spline.tip_radius_mm), output),
-            ),
-            process="machined",
-            group=Group.ROTOR,
-            teeth=(spline_teeth(spline, settings),),
-            grade=ALLOYS["aw_7075_t6"],
-            fits=(COUPLING_DOWEL.hole_fit,),
-            features=(
-                clearance(_output_screw(output), (through,), shell.z_motor, shell.z_coupling, countersunk="high"),
-            ),
-            note=f"screwed to the motor's turning face; bore {hub_note(settings)}",
+        coupling_part(
+            slab(shell.z_motor, shell.z_coupling, r_coupling, spline, through, dowels, *windows),
+            spline,
+            clearance(screw, (through,), shell.z_motor, shell.z_coupling, countersunk="high"),
+            "motor's turning face",
+            settings,
         ),
-        _coupling_dowels(shell, motor, settings),
+        coupling_dowels(
+            dowels,
+            shell.z_motor - shell.base_mm,
+            shell.base_mm + shell.coupling_mm + DOWEL_STANDS_OUT_MM,
+            "turning face",
+            settings,
+        ),
     )
 
 
@@ -145,23 +109,6 @@ def _dowel_holes(motor: Motor) -> Pattern:
     """One hole for a dowel between every two screws of the turning face, whose friction alone carries too little."""
     output = _output(motor)
     return COUPLING_DOWEL.holes(output.pitch_circle_mm, output.count, np.pi / output.count)
-
-
-def _coupling_dowels(shell: ExternalLayout, motor: Motor, settings: ActuatorSettings) -> Part:
-    """Build the dowels through the coupling into the motor's turning face."""
-    holes = _dowel_holes(motor)
-    return dowel_part(
-        "coupling_dowel",
-        COUPLING_DOWEL,
-        end_mm=shell.z_motor - shell.base_mm,
-        room_mm=shell.base_mm + shell.coupling_mm + DOWEL_STANDS_OUT_MM,
-        direction=1.0,
-        material=settings.materials.steel,
-        holes=holes,
-        group=Group.ROTOR,
-        partner="coupling",
-        note="drill and ream the turning face through the coupling",
-    )
 
 
 def _coupling_windows(hub_mm: float, output: HolePattern) -> tuple[Pattern, ...]:

@@ -5,6 +5,7 @@ from pareto_monoped.actuator.features import (
     SPIGOT_MM,
     casing_dowel_holes,
     casing_holes,
+    housing_part,
     motor_holes,
     slab,
     spigot,
@@ -20,7 +21,6 @@ from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Role, Visibility
 from pareto_monoped.geometry.screws import M3, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Pattern
-from pareto_monoped.materials import ALLOYS
 
 BACK_BORE_MM = 8.0
 """Radius of the backplate's central hole, behind the motor's shaft; our own choice."""
@@ -50,9 +50,8 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
     mount, screws = casing_holes(at, settings), _flange_holes(shell, settings, M3.hole)
     dowels = casing_dowel_holes(at, settings)
     return (
-        Part(
+        housing_part(
             name="ring_housing",
-            role=Role.HOUSING,
             material=materials.aluminium,
             prisms=(
                 *slab(-casing.plate_mm, 0.0, at.r_plate, at.r_open, mount, dowels),
@@ -66,9 +65,6 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
                 *tube(z_flange, at.z_gear_front, shell.r_tube, at.r_ring),
                 *tube(z_flange, z_flange + casing.flange_mm, shell.r_flange, shell.r_tube, screws),
             ),
-            process="machined",
-            group=Group.HOUSING,
-            grade=ALLOYS["aw_6082_t6"],
             fits=(
                 Fit(diameter_mm=2.0 * at.r_seat, zone="J7", seat=True),
                 Fit(diameter_mm=2.0 * at.r_ring, zone="H7", seat=True),
@@ -107,9 +103,8 @@ def _casing_and_backplate(
     r_mount = 0.5 * (motor.mount_holes.pitch_circle_mm + motor.mount_holes.diameter_mm)
     back_vents = vents(r_mount + casing.vent_wall_mm, at.r_casing, casing.vent_wall_mm)
     return (
-        Part(
+        housing_part(
             name="casing",
-            role=Role.HOUSING,
             material=materials.aluminium,
             prisms=(
                 *tube(at.z_gear_back, z_flange, shell.r_web, at.r_ring, threads),
@@ -117,9 +112,6 @@ def _casing_and_backplate(
                 *tube(z_plate + casing.flange_mm, shell.z_web, at.r_casing + casing.wall_mm, at.r_casing),
                 *tube(z_plate, z_plate + casing.flange_mm, at.r_plate, at.r_casing, mount),
             ),
-            process="machined",
-            group=Group.HOUSING,
-            grade=ALLOYS["aw_6082_t6"],
             features=(
                 tapped(M3, (threads,), shell.z_web, z_flange, enters="high"),
                 tapped(M3, (mount,), z_plate, z_plate + casing.flange_mm, enters="low"),
@@ -128,9 +120,8 @@ def _casing_and_backplate(
             ),
             note="bore and faces in one clamping",
         ),
-        Part(
+        housing_part(
             name="backplate",
-            role=Role.HOUSING,
             material=materials.aluminium,
             prisms=(
                 *slab(
@@ -144,9 +135,6 @@ def _casing_and_backplate(
                 ),
                 *spigot(z_plate, at, settings),
             ),
-            process="machined",
-            group=Group.HOUSING,
-            grade=ALLOYS["aw_6082_t6"],
             features=(turned(at.r_casing, z_plate + SPIGOT_MM, -1.0),),
             note="step to fit the casing",
         ),

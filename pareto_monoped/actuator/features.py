@@ -11,16 +11,19 @@ Both joints have the same actuator. At the knee, sensor and cable stand in the j
 How the teeth of gears and splines are made: what their rating takes for granted, for drawings and parts list.
 """
 
+from functools import partial
+
 import numpy as np
 
 from pareto_monoped.actuator.bearings import Bearing
-from pareto_monoped.actuator.layout import Layout
+from pareto_monoped.actuator.layout import COUPLING_DOWEL, Layout, SunNeck, hub_note, spline_note
 from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.rating.load import runout_um
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.geometry.dowels import Dowel
+from pareto_monoped.geometry.dowels import Dowel, dowel_part
+from pareto_monoped.geometry.features import Hole
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
-from pareto_monoped.geometry.making import ToothMaking
+from pareto_monoped.geometry.making import Fit, ToothMaking
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3
@@ -37,14 +40,82 @@ MOTOR_TAPPED_HOLE_MM = -0.8
 """Tapping hole less thread diameter for the motor's mounting pattern (ISO 2306: 4.2 mm for M5)."""
 
 
-def gear_grade(settings: ActuatorSettings, grade: GearGrade) -> GearGrade | None:
-    """Return the steel of a gear under ``iso6336``; the rules of the paper name none."""
-    return None if settings.rules == "paper" else grade
+def gear_part(settings: ActuatorSettings, steel: GearGrade) -> "partial[Part]":
+    """Return what makes the part of a gear; the rules of the paper name neither its steel nor its accuracy."""
+    rated = settings.rules != "paper"
+    return partial(
+        Part,
+        role=Role.GEAR,
+        visibility=Visibility.INSIDE,
+        material=settings.materials.gear_steel,
+        process="machined",
+        grade=steel if rated else None,
+        accuracy_class=settings.parts.rating.accuracy_class if rated else None,
+    )
 
 
-def gear_accuracy(settings: ActuatorSettings) -> int | None:
-    """Return the accuracy class of a gear's teeth under ``iso6336``; the rules of the paper name none."""
-    return None if settings.rules == "paper" else settings.parts.rating.accuracy_class
+def sun_part(
+    at: Layout,
+    neck: SunNeck,
+    settings: ActuatorSettings,
+    spline: ExternalGear,
+    shaft_mm: float,
+    *,
+    behind: tuple[Prism, ...],
+    seats_mm: tuple[float, ...] = (),
+) -> Part:
+    """Build the sun in one piece with its splined shaft, whose prisms ``behind`` the teeth depend on the family."""
+    teeth, steel = at.gears.sun(settings.tooth_thinning_mm(at.gears.module_mm)), settings.gear_steels.sun
+    return gear_part(settings, steel)(
+        name="sun",
+        prisms=(
+            *slab(neck.z, -END_PLAY_MM, neck.r_journal),
+            *slab(at.z_gear_front, neck.z, neck.r),
+            *slab(at.z_gear_back, at.z_gear_front, teeth),
+            *behind,
+        ),
+        group=Group.ROTOR,
+        teeth=made(rated_teeth(at.gears.sun(), steel, settings, at.gears.planet()), spline_teeth(spline, settings)),
+        fits=tuple(Fit(diameter_mm=2.0 * radius, zone="h6", seat=True) for radius in (neck.r_journal, *seats_mm)),
+        note=f"one piece with its shaft, {spline_note(spline, shaft_mm)}; " + gear_note(teeth, settings),
+        joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling"),
+    )
+
+
+def coupling_part(
+    prisms: tuple[Prism, ...], spline: ExternalGear, screws: Hole, screwed_to: str, settings: ActuatorSettings
+) -> Part:
+    """Build the coupling between motor and sun."""
+    return Part(
+        name="coupling",
+        role=Role.COUPLING,
+        visibility=Visibility.INSIDE,
+        material=settings.materials.aluminium,
+        prisms=prisms,
+        process="machined",
+        group=Group.ROTOR,
+        teeth=(spline_teeth(spline, settings),),
+        grade=ALLOYS["aw_7075_t6"],
+        fits=(COUPLING_DOWEL.hole_fit,),
+        features=(screws,),
+        note=f"screwed to the {screwed_to}; bore {hub_note(settings)}",
+    )
+
+
+def coupling_dowels(holes: Pattern, end_mm: Numbers, room_mm: Numbers, reamed: str, settings: ActuatorSettings) -> Part:
+    """Build the dowels through the coupling into what turns it."""
+    return dowel_part(
+        "coupling_dowel",
+        COUPLING_DOWEL,
+        end_mm=end_mm,
+        room_mm=room_mm,
+        direction=1.0,
+        material=settings.materials.steel,
+        holes=holes,
+        group=Group.ROTOR,
+        partner="coupling",
+        note=f"drill and ream the {reamed} through the coupling",
+    )
 
 
 def gear_note(gear: ExternalGear | InternalGear, settings: ActuatorSettings) -> str:
@@ -169,6 +240,8 @@ def bought_bearing(
     )
 
 
+housing_part = partial(Part, role=Role.HOUSING, process="machined", group=Group.HOUSING, grade=ALLOYS["aw_6082_t6"])
+"""Builds a part of the housing, of the alloy that all of them are made of."""
 BODY_RADIUS_MM, _BODY_MM = 4.0, 7.0
 MAGNET_RADIUS_MM, MAGNET_MM = 2.0, 4.0
 _GAP_MM = 1.0
@@ -208,15 +281,11 @@ def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, sha
             note=f"RM08 (RLS), 12 bit; {_GAP_MM:g} mm from the magnet, within 0.5 mm",
             joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="encoder_cap"),
         ),
-        Part(
+        housing_part(
             name="encoder_cap",
-            role=Role.HOUSING,
             visibility=Visibility.INSIDE,
             material=MATERIALS.aluminium,
             prisms=tube(z_back_mm, z_back_mm + _CAP_MM, bore_mm, BODY_RADIUS_MM),
-            process="machined",
-            group=Group.HOUSING,
-            grade=ALLOYS["aw_6082_t6"],
             note="flush with the backplate",
             joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="backplate"),
         ),

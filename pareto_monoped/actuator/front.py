@@ -4,9 +4,8 @@ import numpy as np
 
 from pareto_monoped.actuator.features import (
     bought_bearing,
-    gear_accuracy,
-    gear_grade,
     gear_note,
+    gear_part,
     made,
     output_dowel_holes,
     output_holes,
@@ -79,32 +78,17 @@ def gear_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
 
 
 def _planet(at: Layout, settings: ActuatorSettings) -> Part:
-    materials, gears = settings.materials, at.gears
-    return Part(
+    gears, steel, bushes = at.gears, settings.gear_steels.planet, settings.planet_bearing == "bushes"
+    bore = Circle(radius_mm=0.5 * settings.planet_bore_mm)
+    return gear_part(settings, steel)(
         name="planet",
-        role=Role.GEAR,
-        visibility=Visibility.INSIDE,
-        material=materials.gear_steel,
         prisms=planet_prisms(at, settings),
-        process="machined",
         group=Group.PLANET,
-        grade=gear_grade(settings, settings.gear_steels.planet),
-        accuracy_class=gear_accuracy(settings),
-        features=(
-            bored(
-                Circle(radius_mm=0.5 * settings.planet_bore_mm),
-                at.z_gear_back,
-                at.z_gear_front,
-                enters="both",
-                pressed=settings.planet_bearing == "bushes",
-            ),
-        ),
-        teeth=made(rated_teeth(gears.planet(), settings.gear_steels.planet, settings, gears.sun(), gears.ring())),
+        features=(bored(bore, at.z_gear_back, at.z_gear_front, enters="both", pressed=bushes),),
+        teeth=made(rated_teeth(gears.planet(), steel, settings, gears.sun(), gears.ring())),
         note=_planet_note(gears.planet(settings.tooth_thinning_mm(gears.module_mm)), settings),
         fits=planet_fits(settings),
-        joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush")
-        if settings.planet_bearing == "bushes"
-        else None,
+        joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush") if bushes else None,
         count=gears.planets,
         pitch_radius_mm=at.r_pins,
     )
@@ -157,22 +141,15 @@ def _pins(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
 
 
 def _ring(at: Layout, settings: ActuatorSettings) -> Part:
-    materials, gears = settings.materials, at.gears
-    return Part(
+    gears, steel = at.gears, settings.gear_steels.ring
+    teeth = gears.ring(settings.tooth_thinning_mm(gears.module_mm))
+    return gear_part(settings, steel)(
         name="ring",
-        role=Role.GEAR,
-        visibility=Visibility.INSIDE,
-        material=materials.gear_steel,
-        prisms=slab(
-            at.z_gear_back, at.z_gear_front, at.r_ring, gears.ring(settings.tooth_thinning_mm(gears.module_mm))
-        ),
-        process="machined",
+        prisms=slab(at.z_gear_back, at.z_gear_front, at.r_ring, teeth),
         group=Group.HOUSING,
-        grade=gear_grade(settings, settings.gear_steels.ring),
         fits=(Fit(diameter_mm=2.0 * at.r_ring, zone="h6", seat=True),),
-        accuracy_class=gear_accuracy(settings),
-        teeth=made(rated_teeth(gears.ring(), settings.gear_steels.ring, settings, gears.planet())),
-        note=gear_note(gears.ring(settings.tooth_thinning_mm(gears.module_mm)), settings),
+        teeth=made(rated_teeth(gears.ring(), steel, settings, gears.planet())),
+        note=gear_note(teeth, settings),
         joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="ring_housing"),
     )
 

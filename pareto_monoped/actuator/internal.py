@@ -3,24 +3,21 @@
 import numpy as np
 
 from pareto_monoped.actuator.features import (
-    END_PLAY_MM,
     MOTOR_TAPPED_HOLE_MM,
     SPIGOT_MM,
     bought_bearing,
     casing_dowel_holes,
     casing_holes,
+    coupling_dowels,
+    coupling_part,
     encoder_parts,
-    gear_accuracy,
-    gear_grade,
-    gear_note,
-    made,
+    housing_part,
     motor_holes,
     note_with,
-    rated_teeth,
     shaft_end,
     slab,
     spigot,
-    spline_teeth,
+    sun_part,
     tube,
     vents,
 )
@@ -31,9 +28,7 @@ from pareto_monoped.actuator.layout import (
     InternalLayout,
     Layout,
     frameless,
-    hub_note,
     internal_layout,
-    spline_note,
 )
 from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
@@ -44,7 +39,6 @@ from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, clearance, screw_for, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Pattern
-from pareto_monoped.materials import ALLOYS
 
 FLANGE_DOWEL = Dowel(diameter_mm=2.5)
 """Between ring housing and casing; our own choice: the thinnest sold whose length is that of both flanges."""
@@ -90,69 +84,38 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
 
 def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
     """Build what turns with the motor: the sun in one piece with its splined shaft, and the coupling to the bell."""
-    data, materials = settings.parts, settings.materials
-    coupling, shaft, spline = data.coupling, data.coupling.shaft_radius_mm, data.spline.internal
-    z_hub = shell.z_coupling - coupling.thickness_mm
-    dowels = _bell_dowel_holes(settings)
-    teeth = at.gears.sun(settings.tooth_thinning_mm(at.gears.module_mm))
+    coupling, spline = settings.parts.coupling, settings.parts.spline.internal
+    shaft = coupling.shaft_radius_mm
+    z_hub, threads, dowels = (
+        shell.z_coupling - coupling.thickness_mm,
+        _bell_holes(settings, M3.core),
+        _bell_dowel_holes(settings),
+    )
     return (
-        Part(
-            name="sun",
-            role=Role.GEAR,
-            visibility=Visibility.INSIDE,
-            material=materials.gear_steel,
-            prisms=(
-                *slab(shell.neck.z, -END_PLAY_MM, shell.neck.r_journal),
-                *slab(at.z_gear_front, shell.neck.z, shell.neck.r),
-                *slab(at.z_gear_back, at.z_gear_front, teeth),
+        sun_part(
+            at,
+            shell.neck,
+            settings,
+            spline,
+            shaft,
+            behind=(
                 *slab(shell.z_coupling, at.z_gear_back, shaft),
                 *slab(z_hub, shell.z_coupling, spline),
                 *shaft_end(shell.z_plate, z_hub, shaft),
             ),
-            process="machined",
-            group=Group.ROTOR,
-            grade=gear_grade(settings, settings.gear_steels.sun),
-            accuracy_class=gear_accuracy(settings),
-            teeth=made(
-                rated_teeth(at.gears.sun(), settings.gear_steels.sun, settings, at.gears.planet()),
-                spline_teeth(spline, settings),
-            ),
-            fits=(
-                Fit(diameter_mm=2.0 * shell.neck.r_journal, zone="h6", seat=True),
-                Fit(diameter_mm=2.0 * shaft, zone="h6", seat=True),
-            ),
-            note=f"one piece with its shaft, {spline_note(spline, shaft)}; " + gear_note(teeth, settings),
-            joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling"),
+            seats_mm=(shaft,),
         ),
-        Part(
-            name="coupling",
-            role=Role.COUPLING,
-            visibility=Visibility.INSIDE,
-            material=materials.aluminium,
-            prisms=(
-                *slab(z_hub, shell.z_coupling, coupling.radius_mm, spline, _bell_holes(settings, M3.core), dowels),
+        coupling_part(
+            (
+                *slab(z_hub, shell.z_coupling, coupling.radius_mm, spline, threads, dowels),
                 *tube(shell.z_seat, z_hub, shaft + _HUB_WALL_MM, shaft),
             ),
-            process="machined",
-            group=Group.ROTOR,
-            teeth=(spline_teeth(spline, settings),),
-            grade=ALLOYS["aw_7075_t6"],
-            fits=(COUPLING_DOWEL.hole_fit,),
-            features=(tapped(M3, (_bell_holes(settings, M3.core),), z_hub, shell.z_coupling, enters="high"),),
-            note=f"screwed to the bell; bore {hub_note(settings)}",
+            spline,
+            tapped(M3, (threads,), z_hub, shell.z_coupling, enters="high"),
+            "bell",
+            settings,
         ),
-        dowel_part(
-            "coupling_dowel",
-            COUPLING_DOWEL,
-            end_mm=z_hub,
-            room_mm=shell.z_bell - z_hub + DOWEL_STANDS_OUT_MM,
-            direction=1.0,
-            material=materials.steel,
-            holes=dowels,
-            group=Group.ROTOR,
-            partner="coupling",
-            note="drill and ream the bell through the coupling",
-        ),
+        coupling_dowels(dowels, z_hub, shell.z_bell - z_hub + DOWEL_STANDS_OUT_MM, "bell", settings),
     )
 
 
@@ -189,9 +152,8 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
     front_vents = vents(shell.r_flange, at.r_casing, casing.vent_wall_mm)
     z_plate, z_flange, z_lip = shell.z_plate, shell.z_flange, shell.z_lip
     return (
-        Part(
+        housing_part(
             name="casing",
-            role=Role.HOUSING,
             material=aluminium,
             prisms=(
                 *slab(-casing.plate_mm, 0.0, at.r_plate, at.r_open, mount, dowels, screws, flange_dowels, *front_vents),
@@ -200,9 +162,6 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
                 *tube(z_plate + casing.flange_mm, -casing.rim_mm, at.r_casing + casing.wall_mm, at.r_casing),
                 *tube(z_plate, z_plate + casing.flange_mm, at.r_plate, at.r_casing, mount),
             ),
-            process="machined",
-            group=Group.HOUSING,
-            grade=ALLOYS["aw_6082_t6"],
             features=(
                 clearance(M3, (screws,), -casing.plate_mm, 0.0, countersunk="high"),
                 tapped(M3, (mount,), -casing.rim_mm, 0.0, enters="high"),
@@ -212,9 +171,8 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
             fits=(Fit(diameter_mm=settings.parts.interface.mount_dowel_mm, zone="H7"), FLANGE_DOWEL.hole_fit),
             note="bore and faces in one clamping",
         ),
-        Part(
+        housing_part(
             name="ring_housing",
-            role=Role.HOUSING,
             material=aluminium,
             prisms=(
                 *tube(z_flange, -casing.plate_mm, shell.r_flange, at.r_seat, threads, flange_dowels),
@@ -229,9 +187,6 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
                     at.r_stator_in - casing.ring_wall_mm,
                 ),
             ),
-            process="machined",
-            group=Group.HOUSING,
-            grade=ALLOYS["aw_6082_t6"],
             fits=(
                 Fit(diameter_mm=2.0 * at.r_seat, zone="J7", seat=True),
                 Fit(diameter_mm=2.0 * at.r_ring, zone="H7", seat=True),
@@ -278,9 +233,8 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
     r_mount = 0.5 * (holes.pitch_circle_mm + holes.diameter_mm)
     r_pad = 0.5 * (holes.pitch_circle_mm - holes.diameter_mm) - _PAD_RIM_MM
     back_vents = vents(r_mount + casing.vent_wall_mm, at.r_casing, casing.vent_wall_mm)
-    return Part(
+    return housing_part(
         name="backplate",
-        role=Role.HOUSING,
         material=settings.materials.aluminium,
         prisms=(
             *slab(shell.z_end, z_plate, at.r_plate, rear_seat - casing.lip_mm, back, threads, *back_vents),
@@ -288,9 +242,6 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
             *tube(z_plate, shell.z_seat, rear_seat + casing.seat_wall_mm, rear_seat),
             *spigot(z_plate, at, settings),
         ),
-        process="machined",
-        group=Group.HOUSING,
-        grade=ALLOYS["aw_6082_t6"],
         fits=(Fit(diameter_mm=2.0 * rear_seat, zone="J7", seat=True),),
         features=(
             tapped(

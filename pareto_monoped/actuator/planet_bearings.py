@@ -1,5 +1,7 @@
 """What the planets turn on, as parts: a bush each, or rows of needle rollers between washers."""
 
+from functools import partial
+
 import numpy as np
 
 from pareto_monoped.actuator.features import note_with, tube
@@ -28,20 +30,24 @@ def planet_bearing_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, 
 
 def _bushes(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     stands_out = settings.planet_clearance_mm - _BUSH_PLAY_MM
-    pin = 0.5 * settings.parts.carrier.pin_diameter_mm
+    pin, planet_part = 0.5 * settings.parts.carrier.pin_diameter_mm, _planet_part(at)
     return (
-        Part(
+        planet_part(
             name="planet_bush",
             role=Role.BUSH,
-            visibility=Visibility.INSIDE,
             material=settings.materials.bush_bronze,
             prisms=tube(at.z_gear_back - stands_out, at.z_gear_front + stands_out, 0.5 * settings.planet_bore_mm, pin),
             process="bought",
-            group=Group.PLANET,
             note=_bush_note(at.face_width_mm + 2.0 * stands_out, settings),
-            count=at.gears.planets,
-            pitch_radius_mm=at.r_pins,
         ),
+    )
+
+
+def _planet_part(at: Layout) -> "partial[Part]":
+    """Return what makes a part that turns with the planets."""
+    gears = at.gears
+    return partial(
+        Part, visibility=Visibility.INSIDE, group=Group.PLANET, count=gears.planets, pitch_radius_mm=at.r_pins
     )
 
 
@@ -69,53 +75,41 @@ def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
         (0.0, 0.0, at.z_gear_front + data.washer_play_mm),
         (0.0, 0.0, at.z_gear_back - data.washer_play_mm - data.washer_mm),
     )
-    length = rows.total_mm / len(needles)
+    length, planet_part = rows.total_mm / len(needles), _planet_part(at)
     parts = [
-        Part(
+        planet_part(
             name="planet_needles",
             role=Role.BEARING,
-            visibility=Visibility.INSIDE,
             material=settings.materials.bearing_steel,
             prisms=tube(0.0, length, 0.5 * bore, 0.5 * pin),
             process="bought",
-            group=Group.PLANET,
             catalogue_mass_kg=rows.needles * one_kg * length,
             note=note_with(
                 f"{rows.needles} loose needle rollers " + "{} x {} mm (ISO 3096), full complement, greased",
                 data.diameter_mm,
                 rows.length_mm,
             ),
-            count=at.gears.planets,
-            pitch_radius_mm=at.r_pins,
             places_mm=needles,
         ),
-        Part(
+        planet_part(
             name="planet_washer",
             role=Role.SPACER,
-            visibility=Visibility.INSIDE,
             material=settings.materials.steel,
             prisms=tube(0.0, data.washer_mm, 0.5 * data.washer_diameter_mm, 0.5 * pin),
             process="bought",
-            group=Group.PLANET,
             note=note_with("DIN 988, {} x {} x {}", pin, data.washer_diameter_mm, data.washer_mm),
-            count=at.gears.planets,
-            pitch_radius_mm=at.r_pins,
             places_mm=washer_places,
         ),
     ]
     if np.ndim(spacer) or spacer:
         parts.append(
-            Part(
+            planet_part(
                 name="needle_spacer",
                 role=Role.SPACER,
-                visibility=Visibility.INSIDE,
                 material=settings.materials.aluminium,
                 prisms=tube(0.0, spacer, 0.5 * bore - _SPACER_PLAY_MM, 0.5 * pin + _SPACER_PLAY_MM),
                 process="machined",
-                group=Group.PLANET,
                 note="fills the planet's bore beside its needles",
-                count=at.gears.planets,
-                pitch_radius_mm=at.r_pins,
                 places_mm=spacers,
             )
         )
