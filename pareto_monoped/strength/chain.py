@@ -10,6 +10,8 @@ The pull swells from slack once a jump, in the strand that stops the knee's roto
 against its bar, then has the amplitude of half the pull.
 """
 
+from functools import partial
+
 import numpy as np
 
 from pareto_monoped.geometry.tightening import thread_size
@@ -25,6 +27,7 @@ from pareto_monoped.leg.chain import (
 )
 from pareto_monoped.leg.chain_drives import ChainDrive
 from pareto_monoped.materials import ALLOYS
+from pareto_monoped.strength.connections import MISES
 from pareto_monoped.strength.joint import LegJoint, Structure
 
 _PRESSURE_MPA, _SPEED_M_PER_S, _HOURS = 31.0, 0.1, 15000.0
@@ -55,35 +58,7 @@ def _wear(s: Structure) -> float:
     return wear_n(s.leg.chain, s.settings.parts.duty.jumps)
 
 
-_CURE = "release the knee's torque before its stop, a lower knee_ratio, or a motor of less torque"
-JOINTS = (
-    LegJoint(
-        name="chain_breaking",
-        group="chain",
-        formula="breaking load / pull",
-        source="ISO 606, least tensile strength",
-        required=5.0,
-        required_source="makers' catalogues and DIN 8150: static safety of 5 to 7 under shocks, for chains up to 3 m/s",
-        loads=("peak_chain_tension_n",),
-        capacity=lambda s: s.leg.chain.breaking_n,
-        parts=("chain_hip", "chain_knee"),
-        cure=_CURE,
-    ),
-    LegJoint(
-        name="chain_wear",
-        group="chain",
-        formula="p A s / (s_duty F), with s the sliding path of a pin",
-        source="Archard, J. Appl. Phys. 24 (1953); allowed pressure: 17 percent below that of ASME B29.1",
-        required=1.0,
-        required_source="the peak is taken for all of the path; 3 percent are within the travel of the turnbuckles",
-        loads=("peak_chain_tension_n",),
-        capacity=_wear,
-        parts=("chain_hip", "chain_knee"),
-        cure=_CURE,
-    ),
-)
 BAR, FORK = ALLOYS["aw_7075_t6"], ALLOYS["c45_qt"]
-_SHEAR = 1.0 / np.sqrt(3.0)  # yield in shear over that in tension (von Mises)
 _LIMIT_CYCLES = 2e6  # N_D of VDI 2230-1
 _LEAST_CYCLES = 1e4  # below, VDI 2230-1 gives no fatigue strength
 
@@ -109,7 +84,7 @@ def strip_n(diameter_mm: float, engaged_mm: float, yield_mpa: float) -> float:
     thread = thread_size(diameter_mm)
     width = 0.5 * thread.pitch_mm + (diameter_mm - thread.flank_diameter_mm) * np.tan(np.pi / 6.0)
     area = np.pi * diameter_mm * width * engaged_mm / thread.pitch_mm
-    return float(area * _SHEAR * yield_mpa)
+    return float(area * MISES * yield_mpa)
 
 
 def bar_n(width_mm: float, flat_mm: float, diameter_mm: float, yield_mpa: float) -> float:
@@ -128,7 +103,7 @@ def fork_n(half_mm: float, cheek_mm: float, pin_mm: float, slot_mm: float, root_
     """
     beside = 2.0 * cheek_mm * (2.0 * half_mm - pin_mm) * yield_mpa
     under = 2.0 * cheek_mm * pin_mm * yield_mpa
-    pin = 2.0 * 0.25 * np.pi * pin_mm**2 * _SHEAR * yield_mpa
+    pin = 2.0 * 0.25 * np.pi * pin_mm**2 * MISES * yield_mpa
     root = 8.0 / (slot_mm + cheek_mm) * 2.0 * half_mm * root_mm**2 / 6.0 * yield_mpa
     return float(min(beside, under, pin, root))
 
@@ -140,66 +115,38 @@ def _fork(s: Structure) -> float:
 
 
 _SIZE = 2.0 * THREAD.shank
-_ENDS = ("turnbuckle_end_hip", "turnbuckle_end_knee")
-_YIELD = "our own choice against yield, for a pull that is measured"
-TURNBUCKLE_JOINTS = tuple(
-    LegJoint(
-        name=name,
-        group="chain",
-        formula=formula,
-        source=source,
-        required=required,
-        required_source=reason,
-        loads=("peak_chain_tension_n",),
-        capacity=capacity,
-        parts=parts,
-        cure="release the knee's torque before its stop, a lower knee_ratio, or a motor of less torque",
-    )
-    for name, formula, source, required, reason, capacity, parts in (
-        (
-            "turnbuckle_stud",
-            "A_s R_e / F",
-            "stress area of ISO 898-1",
-            1.5,
-            _YIELD,
-            lambda s: stud_yield_n(_SIZE, FORK.yield_mpa),
-            _ENDS,
-        ),
-        (
-            "turnbuckle_fatigue",
-            "2 sigma_A A_s / F for the jumps of the duty",
-            "VDI 2230-1, 5.5.3, thread rolled before heat treatment",
-            1.2,
-            "VDI 2230-1, 5.5.3: fatigue strength with 1 percent of failures; 1.2 is our own choice",
-            lambda s: stud_fatigue_n(_SIZE, s.settings.parts.duty.jumps),
-            _ENDS,
-        ),
-        (
-            "turnbuckle_thread",
-            "A_thread R_e / sqrt(3) / F at the long end of the travel",
-            "shear area of ISO 898-1, annex",
-            1.5,
-            _YIELD,
-            lambda s: strip_n(_SIZE, LEAST_ENGAGED, BAR.yield_mpa),
-            ("turnbuckle_bar",),
-        ),
-        (
-            "turnbuckle_bar",
-            "A R_e / F",
-            "tension, in the flat and beside the thread",
-            1.5,
-            _YIELD,
-            lambda s: bar_n(BAR_WIDTH, BAR_FLAT, _SIZE, BAR.yield_mpa),
-            ("turnbuckle_bar",),
-        ),
-        (
-            "turnbuckle_fork",
-            "least of tension, bearing, shear of the pin and bending of the root, over F",
-            "straight beams: Roark's Formulas for Stress and Strain, chapter 8",
-            1.2,
-            _YIELD,
-            _fork,
-            _ENDS,
-        ),
-    )
+_row = partial(
+    LegJoint,
+    group="chain",
+    loads=("peak_chain_tension_n",),
+    cure="release the knee's torque before its stop, a lower knee_ratio, or a motor of less torque",
 )
+_CHAIN, _ENDS = ("chain_hip", "chain_knee"), ("turnbuckle_end_hip", "turnbuckle_end_knee")
+_YIELD = "our own choice against yield, for a pull that is measured"
+JOINTS = (
+    _row(name="chain_breaking", required=5.0, parts=_CHAIN, capacity=lambda s: s.leg.chain.breaking_n,
+        formula="breaking load / pull", source="ISO 606, least tensile strength",
+        required_source="makers' catalogues and DIN 8150: static safety of 5 to 7 under shocks, for chains up to "
+        "3 m/s"),
+    _row(name="chain_wear", required=1.0, parts=_CHAIN, capacity=_wear,
+        formula="p A s / (s_duty F), with s the sliding path of a pin",
+        source="Archard, J. Appl. Phys. 24 (1953); allowed pressure: 17 percent below that of ASME B29.1",
+        required_source="the peak is taken for all of the path; 3 percent are within the travel of the turnbuckles"),
+    _row(name="turnbuckle_stud", required=1.5, parts=_ENDS, capacity=lambda s: stud_yield_n(_SIZE, FORK.yield_mpa),
+        formula="A_s R_e / F", source="stress area of ISO 898-1", required_source=_YIELD),
+    _row(name="turnbuckle_fatigue", required=1.2, parts=_ENDS,
+        capacity=lambda s: stud_fatigue_n(_SIZE, s.settings.parts.duty.jumps),
+        formula="2 sigma_A A_s / F for the jumps of the duty",
+        source="VDI 2230-1, 5.5.3, thread rolled before heat treatment",
+        required_source="VDI 2230-1, 5.5.3: fatigue strength with 1 percent of failures; 1.2 is our own choice"),
+    _row(name="turnbuckle_thread", required=1.5, parts=("turnbuckle_bar",),
+        capacity=lambda s: strip_n(_SIZE, LEAST_ENGAGED, BAR.yield_mpa),
+        formula="A_thread R_e / sqrt(3) / F at the long end of the travel",
+        source="shear area of ISO 898-1, annex", required_source=_YIELD),
+    _row(name="turnbuckle_bar", required=1.5, parts=("turnbuckle_bar",),
+        capacity=lambda s: bar_n(BAR_WIDTH, BAR_FLAT, _SIZE, BAR.yield_mpa),
+        formula="A R_e / F", source="tension, in the flat and beside the thread", required_source=_YIELD),
+    _row(name="turnbuckle_fork", required=1.2, parts=_ENDS, capacity=_fork,
+        formula="least of tension, bearing, shear of the pin and bending of the root, over F",
+        source="straight beams: Roark's Formulas for Stress and Strain, chapter 8", required_source=_YIELD),
+)  # fmt: skip

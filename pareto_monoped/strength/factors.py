@@ -34,7 +34,6 @@ from pareto_monoped.strength.joint import (
 TABLE: tuple[ActuatorJoint | LegJoint, ...] = (
     *gears.JOINTS,
     *chain.JOINTS,
-    *chain.TURNBUCKLE_JOINTS,
     *stops.STOP_JOINTS,
     *drive.JOINTS,
     *drive.WEB_JOINTS,

@@ -23,12 +23,11 @@ from pareto_monoped.leg.knee import AXLE_DOWEL, DOWEL_DEPTH, axle_dowels
 from pareto_monoped.leg.sprocket import middle_mm
 from pareto_monoped.leg.stops import knee_stop, knee_strikers
 from pareto_monoped.materials import ALLOYS
-from pareto_monoped.strength.connections import least_preload_n
+from pareto_monoped.strength.connections import MISES, least_preload_n
 from pareto_monoped.strength.drive import fastening, layout_of, shank_and_thread_mm, yield_mpa
 from pareto_monoped.strength.joint import ActuatorJoint, LegJoint, Structure
 
 AXLE, PLATE = ALLOYS["aw_7075_t6"], ALLOYS["aw_6082_t6"]
-_SHEAR = 1.0 / np.sqrt(3.0)  # yield in shear over that in tension (von Mises)
 _BEARINGS = 2
 
 
@@ -40,7 +39,7 @@ def dowels_n_m(
     ``layers``: depth in mm and yield stress in MPa of each part that a dowel stands in.
     """
     holes = min(diameter_mm * depth * stress for depth, stress in layers)
-    shear = 0.75 * 0.25 * np.pi * diameter_mm**2 * _SHEAR * pin_mpa  # 4 / 3 of the mean in the middle
+    shear = 0.75 * 0.25 * np.pi * diameter_mm**2 * MISES * pin_mpa  # 4 / 3 of the mean in the middle
     return float(1e-3 * count * circle_mm * min(holes, shear))
 
 
@@ -102,45 +101,24 @@ def _life(s: Structure) -> tuple[float, ...]:
 
 _CURE = "release the knee's torque before its stop, a lower knee_ratio, or a motor of less torque"
 JOINTS = (
-    LegJoint(
-        name="knee_axle_dowels",
-        group="joints",
+    LegJoint(name="knee_axle_dowels", group="joints",
         formula="2 n r min(d t R_e, 3 pi d^2 tau_e / 16) / (F_chain r_sprocket)",
-        source="pins in holes and in shear: Roloff/Matek, Maschinenelemente, chapter 9",
-        required=1.5,
+        source="pins in holes and in shear: Roloff/Matek, Maschinenelemente, chapter 9", required=1.5,
         required_source="our own choice: dowels and plates do not share a load quite evenly; friction is not counted",
-        loads=("peak_chain_tension_n",),
-        capacity=_dowels,
-        parts=("knee_axle", "knee_axle_dowel_near", "knee_axle_dowel_far"),
-        cure=_CURE,
-    ),
-    LegJoint(
-        name="knee_bearing_static",
-        group="joints",
-        formula="2 C0 / (F_knee + |F_chain + T_stop / lever|), as vectors",
-        source="ISO 76",
-        required=1.0,
+        loads=("peak_chain_tension_n",), capacity=_dowels,
+        parts=("knee_axle", "knee_axle_dowel_near", "knee_axle_dowel_far"), cure=_CURE),
+    LegJoint(name="knee_bearing_static", group="joints",
+        formula="2 C0 / (F_knee + |F_chain + T_stop / lever|), as vectors", source="ISO 76", required=1.0,
         required_source="makers' catalogues: 1 for normal demands; the bearing swings and does not run",
-        loads=("peak_chain_tension_n", "peak_stop_torque_knee_n_m", "peak_knee_force_n"),
-        capacity=_bearings,
-        factor=bearing_safety,
-        parts=("knee_bearing",),
-        cure=_CURE,
-    ),
-    LegJoint(
-        name="knee_bearing_life",
-        group="joints",
+        loads=("peak_chain_tension_n", "peak_stop_torque_knee_n_m", "peak_knee_force_n"), capacity=_bearings,
+        factor=bearing_safety, parts=("knee_bearing",), cure=_CURE),
+    LegJoint(name="knee_bearing_life", group="joints",
         formula="1e6 (2 C / P)^3 / (jumps 2 range / 2 pi), P as of knee_bearing_static",
-        source="ISO 281, L10; swings as parts of turns",
-        required=1.0,
+        source="ISO 281, L10; swings as parts of turns", required=1.0,
         required_source="a life of the duty's jumps; the peak is taken for all of the swing",
-        loads=("peak_chain_tension_n", "peak_stop_torque_knee_n_m", "peak_knee_force_n"),
-        capacity=_life,
-        factor=bearing_life,
-        parts=("knee_bearing",),
-        cure=_CURE,
-    ),
-)
+        loads=("peak_chain_tension_n", "peak_stop_torque_knee_n_m", "peak_knee_force_n"), capacity=_life,
+        factor=bearing_life, parts=("knee_bearing",), cure=_CURE),
+)  # fmt: skip
 
 
 def tube_modulus_mm3(outer_mm: float, inner_mm: float) -> float:
@@ -225,44 +203,20 @@ def opening_n(s: Structure) -> float:
 
 _CHAIN_SUPPORT_CURE = "release the knee's torque before its stop, or a lower knee_ratio"
 CHAIN_SUPPORT_JOINTS = (
-    ActuatorJoint(
-        name="knee_drive_shaft",
-        group="joints",
-        side="knee",
+    ActuatorJoint(name="knee_drive_shaft", group="joints", side="knee",
         formula="W Rp0.2 / (F_chain a (b + c) / (a + b))",
         source="beam on two supports: Roark's Formulas for Stress and Strain, chapter 8; the torque passes by dowels",
-        required=1.5,
-        required_source="our own choice against yield: the shaft is hard and notched at its neck",
-        loads=("peak_chain_tension_n",),
-        capacity=shaft_n,
-        parts=("drive_shaft",),
-        cure=_CHAIN_SUPPORT_CURE,
-    ),
-    ActuatorJoint(
-        name="knee_drive_coupling",
-        group="joints",
-        side="knee",
+        required=1.5, required_source="our own choice against yield: the shaft is hard and notched at its neck",
+        loads=("peak_chain_tension_n",), capacity=shaft_n, parts=("drive_shaft",), cure=_CHAIN_SUPPORT_CURE),
+    ActuatorJoint(name="knee_drive_coupling", group="joints", side="knee",
         formula="Rp0.2 / sqrt((M / W)^2 + 3 (T / 2 W)^2), of the ring inside its holes",
-        source="bending and torsion of a tube, von Mises",
-        required=1.2,
+        source="bending and torsion of a tube, von Mises", required=1.2,
         required_source="our own choice against yield: half of the ring, with the holes, is not counted",
-        loads=("peak_chain_tension_n", "peak_gear_torque_knee_n_m"),
-        capacity=coupling,
-        factor=bending_and_torsion,
-        parts=("drive_coupling",),
-        cure=_CHAIN_SUPPORT_CURE,
-    ),
-    ActuatorJoint(
-        name="knee_drive_opening",
-        group="joints",
-        side="knee",
-        formula="n F_V W / A / M",
-        source="VDI 2230-1, R3: no gap at the edge of the joint, with the least preload",
-        required=1.0,
+        loads=("peak_chain_tension_n", "peak_gear_torque_knee_n_m"), capacity=coupling, factor=bending_and_torsion,
+        parts=("drive_coupling",), cure=_CHAIN_SUPPORT_CURE),
+    ActuatorJoint(name="knee_drive_opening", group="joints", side="knee", formula="n F_V W / A / M",
+        source="VDI 2230-1, R3: no gap at the edge of the joint, with the least preload", required=1.0,
         required_source="VDI 2230-1: the least preload is the one that is left after scatter and embedding",
-        loads=("peak_chain_tension_n",),
-        capacity=opening_n,
-        parts=("drive_screw", "drive_coupling", "drive_sprocket"),
-        cure=_CHAIN_SUPPORT_CURE,
-    ),
-)
+        loads=("peak_chain_tension_n",), capacity=opening_n, parts=("drive_screw", "drive_coupling", "drive_sprocket"),
+        cure=_CHAIN_SUPPORT_CURE),
+)  # fmt: skip

@@ -143,44 +143,18 @@ _SIDE = "yield / (M / Z + N / A + V h / 4 / Z_side)"
 _RUNG = "yield / (V p / 2 / Z_rung)"
 JOINTS = (
     *(
-        _row(
-            f"thigh_plate_{plate}",
+        _row(f"thigh_plate_{plate}",
             f"{_SIDE}; M = max(T_{side}, T_stop / 2), N = (F_chain + F_knee) / 2, V = F_knee / 2",
-            (
-                f"peak_gear_torque_{side}_n_m",
-                "peak_stop_torque_knee_n_m",
-                "peak_chain_tension_n",
-                "peak_knee_force_n",
-                "thigh_length_m",
-            ),
-            _thigh,
-            _thigh_plate,
-            (f"thigh_plate_{plate}",),
-        )
+            (f"peak_gear_torque_{side}_n_m", "peak_stop_torque_knee_n_m", "peak_chain_tension_n", "peak_knee_force_n",
+                "thigh_length_m"),
+            _thigh, _thigh_plate, (f"thigh_plate_{plate}",))
         for plate, side in (("inner", "hip"), ("outer", "knee"))
     ),
-    _row(
-        "thigh_plate_rungs",
-        f"{_RUNG}; V = F_knee / 2",
-        ("peak_knee_force_n", "thigh_length_m"),
-        _thigh,
-        _thigh_rungs,
-        ("thigh_plate_inner", "thigh_plate_outer"),
-    ),
-    _row(
-        "shank_plate_fork",
-        f"{_SIDE}; M = max(T_knee, F_knee l) / 2, N = V = F_knee / 2",
-        ("peak_gear_torque_knee_n_m", "peak_knee_force_n", "shank_length_m"),
-        _fork,
-        _shank_fork,
-        ("shank_plate_near", "shank_plate_far"),
-    ),
-    _row(
-        "shank_plate_sides",
-        f"{_SIDE}; M = F_knee (l - fork) / 2, N = V = F_knee / 2",
-        ("peak_knee_force_n", "shank_length_m"),
-        _shank,
-        _shank_plate,
-        ("shank_plate_near", "shank_plate_far"),
-    ),
-)
+    _row("thigh_plate_rungs", f"{_RUNG}; V = F_knee / 2", ("peak_knee_force_n", "thigh_length_m"), _thigh, _thigh_rungs,
+        ("thigh_plate_inner", "thigh_plate_outer")),
+    _row("shank_plate_fork", f"{_SIDE}; M = max(T_knee, F_knee l) / 2, N = V = F_knee / 2",
+        ("peak_gear_torque_knee_n_m", "peak_knee_force_n", "shank_length_m"), _fork, _shank_fork,
+        ("shank_plate_near", "shank_plate_far")),
+    _row("shank_plate_sides", f"{_SIDE}; M = F_knee (l - fork) / 2, N = V = F_knee / 2",
+        ("peak_knee_force_n", "shank_length_m"), _shank, _shank_plate, ("shank_plate_near", "shank_plate_far")),
+)  # fmt: skip

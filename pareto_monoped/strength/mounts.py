@@ -163,36 +163,22 @@ def _dowel_row(name: str, side: Side, force: str, capacity: _Capacity, parts: tu
 
 _CHAIN, _FOOT = "peak_chain_tension_n", "peak_foot_force_n"
 JOINTS = (
-    _dowel_row(
-        "hip_output_dowels", "hip", _FOOT, hip_output, ("hip_coupling_dowel", "hip_coupling", "thigh_plate_inner")
-    ),
+    _dowel_row("hip_output_dowels", "hip", _FOOT, hip_output,
+        ("hip_coupling_dowel", "hip_coupling", "thigh_plate_inner")),
     _dowel_row("knee_output_dowels", "knee", _CHAIN, knee_output, ("drive_dowel", "drive_coupling", "drive_sprocket")),
     _dowel_row("knee_mount_dowels", "knee", _CHAIN, knee_mount, ("knee_mount_dowel", "thigh_plate_outer")),
     _dowel_row("hip_mount_dowels", "hip", _FOOT, hip_mount, ("hip_mount_dowel", "base_near_cheek")),
-    LegJoint(
-        name="actuator_screws_tightened",
-        group="joints",
+    LegJoint(name="actuator_screws_tightened", group="joints",
         formula="least of thread and seat over the assembly preload F_M",
-        source="VDI 2230-1, R10 and R11, against yield",
-        required=1.0,
-        required_source="the preload is the largest force: a clamped joint adds little to it",
-        loads=(),
-        capacity=screws_tightened,
-        factor=lambda least: least,
+        source="VDI 2230-1, R10 and R11, against yield", required=1.0,
+        required_source="the preload is the largest force: a clamped joint adds little to it", loads=(),
+        capacity=screws_tightened, factor=lambda least: least,
         parts=("hip_coupling_screw", "drive_screw", "knee_mount_screw", "hip_mount_screw"),
-        cure="a lower property class, or deeper threads",
-    ),
-    LegJoint(
-        name="dowels_pressed",
-        group="joints",
-        formula="elastic limit / pressure of the tightest H7/m6",
-        source="DIN 7190-1; limits of ISO 286-2",
-        required=1.0,
-        required_source="the fit may just stay elastic: it is seldom at its tightest",
-        loads=(),
-        capacity=dowels_pressed,
-        factor=lambda least: least,
+        cure="a lower property class, or deeper threads"),
+    LegJoint(name="dowels_pressed", group="joints", formula="elastic limit / pressure of the tightest H7/m6",
+        source="DIN 7190-1; limits of ISO 286-2", required=1.0,
+        required_source="the fit may just stay elastic: it is seldom at its tightest", loads=(),
+        capacity=dowels_pressed, factor=lambda least: least,
         parts=("hip_coupling_dowel", "drive_dowel", "knee_mount_dowel", "coupling_dowel", "ring_housing_dowel"),
-        cure="a looser fit",
-    ),
-)
+        cure="a looser fit"),
+)  # fmt: skip

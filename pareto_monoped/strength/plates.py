@@ -204,57 +204,26 @@ _KNEE = ("peak_knee_force_n", "shank_length_m")
 _SHANK = ("shank_plate_near", "shank_plate_far")
 JOINTS = (
     *(
-        _row(
-            f"thigh_hub_{plate}",
+        _row(f"thigh_hub_{plate}",
             "least of tau_y t (2 pi r - sum d) r and n r F_neck over the circles of holes, over T",
-            (f"peak_gear_torque_{side}_n_m",),
-            capacity,
-            over,
-            (f"thigh_plate_{plate}",),
-            column=False,
-        )
+            (f"peak_gear_torque_{side}_n_m",), capacity, over, (f"thigh_plate_{plate}",), column=False)
         for plate, side, capacity in (("inner", "hip", inner_hub), ("outer", "knee", outer_hub))
     ),
     *(
         row
         for plate, side in (("inner", "hip"), ("outer", "knee"))
         for row in (
-            _row(
-                f"thigh_bridge_{plate}",
+            _row(f"thigh_bridge_{plate}",
                 f"yield / (M / Z_net + N / A_net); M = max(T_{side}, T_stop / 2), N = (F_chain + F_knee) / 2",
-                (f"peak_gear_torque_{side}_n_m", *_BENT),
-                _thigh_net,
-                _thigh_bridge,
-                (f"thigh_plate_{plate}",),
-                column=False,
-            ),
-            _row(
-                f"thigh_side_{plate}",
-                "sigma_c A_side / (M / s + N / 2), on the core; M and N as of thigh_bridge",
-                (f"peak_gear_torque_{side}_n_m", *_BENT),
-                _thigh_column,
-                _thigh_side,
-                (f"thigh_plate_{plate}", "thigh_core"),
-                column=True,
-            ),
+                (f"peak_gear_torque_{side}_n_m", *_BENT), _thigh_net, _thigh_bridge, (f"thigh_plate_{plate}",),
+                column=False),
+            _row(f"thigh_side_{plate}", "sigma_c A_side / (M / s + N / 2), on the core; M and N as of thigh_bridge",
+                (f"peak_gear_torque_{side}_n_m", *_BENT), _thigh_column, _thigh_side,
+                (f"thigh_plate_{plate}", "thigh_core"), column=True),
         )
     ),
-    _row(
-        "shank_bridge",
-        "yield / (M / Z_net + N / A_net); M = F_knee (l - a) / 2, N = F_knee / 2",
-        _KNEE,
-        _shank_net,
-        _shank_bridge,
-        _SHANK,
-        column=False,
-    ),
-    _row(
-        "shank_fork_side",
-        "sigma_c A_side / (M / s + N / 2), free; M = max(T_knee, F_knee l) / 2, N = F_knee / 2",
-        ("peak_gear_torque_knee_n_m", *_KNEE),
-        _fork_column,
-        _fork_side,
-        _SHANK,
-        column=True,
-    ),
-)
+    _row("shank_bridge", "yield / (M / Z_net + N / A_net); M = F_knee (l - a) / 2, N = F_knee / 2", _KNEE, _shank_net,
+        _shank_bridge, _SHANK, column=False),
+    _row("shank_fork_side", "sigma_c A_side / (M / s + N / 2), free; M = max(T_knee, F_knee l) / 2, N = F_knee / 2",
+        ("peak_gear_torque_knee_n_m", *_KNEE), _fork_column, _fork_side, _SHANK, column=True),
+)  # fmt: skip

@@ -160,45 +160,17 @@ def _least(least: Any) -> Any:
 
 
 JOINTS: tuple[ActuatorJoint | LegJoint, ...] = (
-    LegJoint(
-        name="leg_threads",
-        group="joints",
-        formula=_FORMULA,
-        source=_SOURCE,
-        required=1.0,
-        required_source=_REASON,
-        loads=(),
-        capacity=leg_threads,
-        factor=_least,
-        parts=(
-            "knee_cup_screw_near",
-            "knee_cup_screw_far",
-            "thigh_standoff_screw",
-            "hip_seat_screw",
-            "base_rod",
-            "knee_bolt",
-        ),
-        cure=_CURE,
-    ),
+    LegJoint(name="leg_threads", group="joints", formula=_FORMULA, source=_SOURCE, required=1.0,
+        required_source=_REASON, loads=(), capacity=leg_threads, factor=_least,
+        cure=_CURE, parts=("knee_cup_screw_near", "knee_cup_screw_far", "thigh_standoff_screw", "hip_seat_screw",
+            "base_rod", "knee_bolt")),
     *(
-        ActuatorJoint(
-            name=name,
-            group="joints",
-            side=side,
-            formula=_FORMULA,
-            source=_SOURCE,
-            required=1.0,
-            required_source=_REASON,
-            loads=(),
-            capacity=capacity,
-            factor=_least,
-            parts=parts,
-            cure=_CURE,
-        )
+        ActuatorJoint(name=name, group="joints", side=side, formula=_FORMULA, source=_SOURCE, required=1.0,
+            required_source=_REASON, loads=(), capacity=capacity, factor=_least, parts=parts, cure=_CURE)
         for name, side, capacity, parts in (
             ("hip_actuator_threads", SIDES[0], actuator_threads, _OWN),
             ("knee_actuator_threads", SIDES[1], actuator_threads, _OWN),
             ("knee_journal_threads", SIDES[1], journal_threads, ("journal_screw",)),
         )
     ),
-)
+)  # fmt: skip
