@@ -22,7 +22,7 @@ from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.shapes import Arc, Circle, Pattern
 from pareto_monoped.geometry.tightening import YIELD_MPA, Fastening
-from pareto_monoped.materials import ALLOYS
+from pareto_monoped.materials import ALLOYS, Materials
 from pareto_monoped.strength.connections import (
     BOND_SAFETY,
     FRICTION,
@@ -37,7 +37,7 @@ from pareto_monoped.strength.connections import (
     spline_torque_n_m,
     torsion_torque_n_m,
 )
-from pareto_monoped.strength.joint import SIDES, ActuatorJoint, Structure
+from pareto_monoped.strength.joint import SIDES, ActuatorJoint, Side, Structure
 
 MOTOR_FACE_MPA = ALLOYS["aw_6082_t6"].yield_mpa
 """Yield of a motor's turning face and bell, whose alloy makers do not publish; our own assumption."""
@@ -46,7 +46,7 @@ _SLIP = "VDI 2230-1, R12: against slip under static load"
 
 
 def one(s: Structure, role: Role, group: Group) -> Part:
-    """Build the actuator's only part of a role and group."""
+    """Return the actuator's only part of a role and group."""
     (found,) = (part for part in s.actuator.parts if part.role is role and part.group is group)
     return found
 
@@ -106,7 +106,7 @@ def spline(s: Structure) -> float:
 
 
 def _spline(coupling: Part) -> tuple[Prism, ExternalGear]:
-    """Build the slab of the coupling with the spline, and the spline."""
+    """Return the slab of the coupling with the spline, and the spline."""
     ((hub, teeth),) = (
         (prism, hole) for prism in coupling.prisms for hole in prism.holes if isinstance(hole, ExternalGear)
     )
@@ -140,14 +140,18 @@ def coupling_dowels(s: Structure) -> float:
 
 def screw_slip_torque_n_m(screw: Part, s: Structure) -> float:
     """Return the torque about the actuator's axis at which a circle of screws slips."""
-    materials = s.settings.materials
-    preload = least_preload_n(
+    preload = screw_preload_n(screw, s.settings.materials)
+    return 1e-3 * slip_force_n(float(screw.count), preload) * float(screw.pitch_radius_mm)
+
+
+def screw_preload_n(screw: Part, materials: Materials) -> float:
+    """Return the least preload of a steel screw in aluminium."""
+    return least_preload_n(
         fastening(screw),
         shank_and_thread_mm(screw)[0],
         steel_mpa=materials.steel.youngs_modulus_mpa,
         clamped_mpa=materials.aluminium.youngs_modulus_mpa,
     )
-    return 1e-3 * slip_force_n(float(screw.count), preload) * float(screw.pitch_radius_mm)
 
 
 def fastening(screw: Part) -> Fastening:
@@ -237,66 +241,50 @@ def planet_pins(s: Structure) -> tuple[float, float]:
 
 _Row = tuple[str, str, str, tuple[float, str], Callable[[Structure], float], tuple[str, ...]]
 """Name, formula, source, required factor with its reason, capacity, parts: of rows that the gearbox's torque loads."""
+_SHAPES, _BONDS = (SHAPE_SAFETY, _SHAPE), (BOND_SAFETY, "our own choice: a bond cannot be inspected")
+_DOWELS = "Roloff/Matek, 9.2: pressure in the holes of pins"
+_GEARBOX: tuple[_Row, ...] = (
+    ("spline", "k z h l r_m Rp0.2 i / T", "Roloff/Matek, 12.3; DIN 5466", _SHAPES, spline, ("sun", "coupling")),
+    ("sun_shaft", "tau_y pi r^3 / 2 i / T, r within the roots and the hob's run-out", "torsion, von Mises",
+        _SHAPES, shaft, ("sun",)),
+    ("coupling_dowels", "n d l Rp0.2 r i / T", _DOWELS, _SHAPES, coupling_dowels, ("coupling_dowel",)),
+    ("ring_bond", "tau 2 pi r^2 b / (1 - 1 / i) / T", "bonded cylinder, ISO 10123", _BONDS, ring, ("ring",)),
+    ("ring_housing_dowels", "n d l Rp0.2 r / T", _DOWELS, _SHAPES, ring_housing, ("ring_housing_dowel",)),
+    ("planet_pin_bending", "8 W Rp0.2 / L n r / K_gamma / T", "beam on two supports", _SHAPES, pin_bending,
+        ("planet_pin",)),
+    ("planet_pin_seat", "2 d l Rp0.2 n r / K_gamma / T", _DOWELS, _SHAPES, pin_seat, ("planet_pin",)),
+)  # fmt: skip
 
 
-def _rows() -> tuple[ActuatorJoint, ...]:
-    shape = (SHAPE_SAFETY, _SHAPE)
-    bond = (BOND_SAFETY, "our own choice: a bond cannot be inspected")
-    dowels, pins = "Roloff/Matek, 9.2: pressure in the holes of pins", ("planet_pin",)
-    table: tuple[_Row, ...] = (
-        ("spline", "k z h l r_m Rp0.2 i / T", "Roloff/Matek, 12.3; DIN 5466", shape, spline, ("sun", "coupling")),
-        (
-            "sun_shaft",
-            "tau_y pi r^3 / 2 i / T, r within the roots and the hob's run-out",
-            "torsion, von Mises",
-            shape,
-            shaft,
-            ("sun",),
-        ),
-        ("coupling_dowels", "n d l Rp0.2 r i / T", dowels, shape, coupling_dowels, ("coupling_dowel",)),
-        ("ring_bond", "tau 2 pi r^2 b / (1 - 1 / i) / T", "bonded cylinder, ISO 10123", bond, ring, ("ring",)),
-        ("ring_housing_dowels", "n d l Rp0.2 r / T", dowels, shape, ring_housing, ("ring_housing_dowel",)),
-        ("planet_pin_bending", "8 W Rp0.2 / L n r / K_gamma / T", "beam on two supports", shape, pin_bending, pins),
-        ("planet_pin_seat", "2 d l Rp0.2 n r / K_gamma / T", dowels, shape, pin_seat, pins),
+def _loaded(side: Side, row: _Row) -> ActuatorJoint:
+    """Return the row of one side that its gearbox's torque loads."""
+    name, formula, source, (required, reason), capacity, parts = row
+    return ActuatorJoint(
+        name=f"{side}_{name}",
+        group="joints",
+        side=side,
+        formula=formula,
+        source=source,
+        required=required,
+        required_source=reason,
+        loads=(f"peak_gear_torque_{side}_n_m",),
+        capacity=capacity,
+        parts=parts,
+        cure=f"release the {side}'s torque before its stop, or another {side}_ratio",
     )
-    cure = "release the {}'s torque before its stop, or another {}_ratio"
-    gearbox = tuple(
-        ActuatorJoint(
-            name=f"{side}_{name}",
-            group="joints",
-            side=side,
-            formula=formula,
-            source=source,
-            required=required,
-            required_source=reason,
-            loads=(f"peak_gear_torque_{side}_n_m",),
-            capacity=capacity,
-            parts=parts,
-            cure=cure.format(side, side),
-        )
-        for side in SIDES
-        for name, formula, source, (required, reason), capacity, parts in table
-    )
-    reaction = tuple(
-        ActuatorJoint(
-            name=f"{side}_motor_reaction",
-            group="joints",
-            side=side,
+
+
+JOINTS = (
+    *(_loaded(side, row) for side in SIDES for row in _GEARBOX),
+    *(
+        ActuatorJoint(name=f"{side}_motor_reaction", group="joints", side=side, capacity=housing_screws,
             formula=f"n {FRICTION} F_V r i / T; ISSPG: bond of the stator, brought to the same required factor",
-            source="VDI 2230-1; bonded cylinder, ISO 10123",
-            required=SLIP_SAFETY,
-            required_source=_SLIP,
-            loads=(f"peak_torque_{side}_n_m",),
-            capacity=housing_screws,
-            parts=("backplate_screw", "casing_screw", "stator_screw", "motor_stator"),
-            cure="larger screws",
-        )
+            source="VDI 2230-1; bonded cylinder, ISO 10123", required=SLIP_SAFETY, required_source=_SLIP,
+            loads=(f"peak_torque_{side}_n_m",), cure="larger screws",
+            parts=("backplate_screw", "casing_screw", "stator_screw", "motor_stator"))
         for side in SIDES
-    )
-    return gearbox + reaction
-
-
-JOINTS = _rows()
+    ),
+)  # fmt: skip
 _SHARE = 0.5
 """Of the output's torque, in the second carrier: both seats of a pin are alike."""
 _REASON = (
@@ -357,36 +345,12 @@ def bending(s: Structure) -> float:
     return _at_output_n_m(force, float(webs.count), float(webs.r_screw_mm))
 
 
-WEB_JOINTS: tuple[ActuatorJoint, ...] = tuple(
-    ActuatorJoint(
-        name=f"{side}_{name}",
-        group="joints",
-        side=side,
-        formula=formula,
-        source=source,
-        required=1.2,
-        required_source=_REASON,
-        loads=(f"peak_gear_torque_{side}_n_m",),
-        capacity=capacity,
-        parts=parts,
-        cure=f"release the {side}'s torque before its stop, or another {side}_ratio",
-    )
-    for side in SIDES
-    for name, formula, source, capacity, parts in (
-        (
-            "web_screws",
-            "n A_d3 sqrt((Rp0.2^2 - (F_M / A_s)^2) / 3) r / (T / 2)",
-            "von Mises in the core of a tightened screw; VDI 2230-1, 5.5.6, for what overcomes friction",
-            screws,
-            ("web_screw", "carrier", "secondary_carrier"),
-        ),
-        (
-            "webs",
-            "n 2 W Rp0.2 r / L / (T / 2)",
-            "beam clamped at both ends: Roark's Formulas for Stress and Strain, chapter 8",
-            bending,
-            ("carrier",),
-        ),
-    )
-)
-"""Two rows per side."""
+_WEBS: tuple[_Row, ...] = (
+    ("web_screws", "n A_d3 sqrt((Rp0.2^2 - (F_M / A_s)^2) / 3) r / (T / 2)",
+        "von Mises in the core of a tightened screw; VDI 2230-1, 5.5.6, for what overcomes friction",
+        (1.2, _REASON), screws, ("web_screw", "carrier", "secondary_carrier")),
+    ("webs", "n 2 W Rp0.2 r / L / (T / 2)",
+        "beam clamped at both ends: Roark's Formulas for Stress and Strain, chapter 8",
+        (1.2, _REASON), bending, ("carrier",)),
+)  # fmt: skip
+WEB_JOINTS = tuple(_loaded(side, row) for side in SIDES for row in _WEBS)

@@ -23,8 +23,8 @@ from pareto_monoped.leg.knee import AXLE_DOWEL, DOWEL_DEPTH, axle_dowels
 from pareto_monoped.leg.sprocket import middle_mm
 from pareto_monoped.leg.stops import knee_stop, knee_strikers
 from pareto_monoped.materials import ALLOYS
-from pareto_monoped.strength.connections import MISES, least_preload_n
-from pareto_monoped.strength.drive import fastening, layout_of, shank_and_thread_mm, yield_mpa
+from pareto_monoped.strength.connections import MISES
+from pareto_monoped.strength.drive import layout_of, screw_preload_n, yield_mpa
 from pareto_monoped.strength.joint import ActuatorJoint, LegJoint, Structure
 
 AXLE, PLATE = ALLOYS["aw_7075_t6"], ALLOYS["aw_6082_t6"]
@@ -133,7 +133,7 @@ def bending_and_torsion(limit_mpa: Any, bent_per_n: Any, twisted_per_n_m: Any, p
 
 @lru_cache(maxsize=16)
 def _parts(d: LegDimensions) -> tuple[Part, ...]:
-    """Build what turns with the knee's output; all gearboxes of a map share it."""
+    """Return what turns with the knee's output; all gearboxes of a map share it."""
     return tuple(part for part in hip_joints(d) if part.group is Group.KNEE_DRIVE)
 
 
@@ -190,13 +190,7 @@ def opening_n(s: Structure) -> float:
     (prism,) = part.prisms
     assert isinstance(prism.outline, Circle)
     outer, (_, inner) = float(prism.outline.radius_mm), _rim_inside_holes(part)
-    materials = s.settings.materials
-    preload = least_preload_n(
-        fastening(screw),
-        shank_and_thread_mm(screw)[0],
-        steel_mpa=materials.steel.youngs_modulus_mpa,
-        clamped_mpa=materials.aluminium.youngs_modulus_mpa,
-    )
+    preload = screw_preload_n(screw, s.settings.materials)
     pressure = float(screw.count) * preload / (np.pi * (outer**2 - inner**2))
     return float(pressure * tube_modulus_mm3(outer, inner) / _moment_mm(s, float(prism.z0_mm)))
 

@@ -13,7 +13,7 @@ from pareto_monoped.geometry.dowels import Dowel
 from pareto_monoped.geometry.making import interference_mm
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Role
-from pareto_monoped.geometry.shapes import Pattern
+from pareto_monoped.geometry.shapes import Numbers
 from pareto_monoped.leg.base import base_parts
 from pareto_monoped.leg.hip import hip_joints
 from pareto_monoped.materials import ALLOYS, MATERIALS
@@ -33,14 +33,12 @@ def dowels_under(torque_n_m: Any, force_n: Any, acting_n_m: Any, acting_n: Any) 
     return 1.0 / (acting_n_m / torque_n_m + acting_n / force_n)
 
 
-def _pins(parts: tuple[Part, ...], holes: Pattern, group: Group) -> Part:
-    """Build the circle of dowels that stands in a pattern."""
+def _circle(parts: tuple[Part, ...], role: Role, pitch_radius_mm: Numbers, group: Group) -> Part:
+    """Return the circle of dowels or screws with a radius."""
     (found,) = (
         part
         for part in parts
-        if part.role is Role.PIN
-        and part.group is group
-        and np.isclose(float(part.pitch_radius_mm), holes.pitch_radius_mm)
+        if part.role is role and part.group is group and np.isclose(float(part.pitch_radius_mm), pitch_radius_mm)
     )
     return found
 
@@ -57,7 +55,7 @@ def _torque_and_force(pin: Part, *layers: tuple[float, float]) -> tuple[float, f
 def hip_output(s: Structure) -> tuple[float, float]:
     """Torque and force that the dowels between the hip's output flange, its coupling and the thigh's plate carry."""
     d = s.leg
-    pin = _pins(hip_joints(d), d.hip.output_dowel, Group.FIXED)
+    pin = _circle(hip_joints(d), Role.PIN, d.hip.output_dowel.pitch_radius_mm, Group.FIXED)
     low, high = _ends(pin)
     flange, plate = d.hip_mount_mm - low, high + d.thigh_face_mm
     return _torque_and_force(pin, (flange, ALLOYS[_CARRIER].yield_mpa), (plate, ALLOYS[_PLATE].yield_mpa))
@@ -66,7 +64,7 @@ def hip_output(s: Structure) -> tuple[float, float]:
 def knee_output(s: Structure) -> tuple[float, float]:
     """Torque and force that the dowels between the knee's output flange, its coupling and the drive sprocket carry."""
     d, parts = s.leg, hip_joints(s.leg)
-    pin = _pins(parts, d.drive_dowel, Group.KNEE_DRIVE)
+    pin = _circle(parts, Role.PIN, d.drive_dowel.pitch_radius_mm, Group.KNEE_DRIVE)
     sprocket = next(part for part in parts if part.role is Role.SPROCKET)
     low, high = _ends(pin)
     layers = (
@@ -79,7 +77,7 @@ def knee_output(s: Structure) -> tuple[float, float]:
 def knee_mount(s: Structure) -> tuple[float, float]:
     """Return the torque and force that the dowels between the knee actuator's housing and the outer plate carry."""
     d = s.leg
-    pin = _pins(hip_joints(d), d.knee.mount_dowel, Group.FIXED)
+    pin = _circle(hip_joints(d), Role.PIN, d.knee.mount_dowel.pitch_radius_mm, Group.FIXED)
     _, high = _ends(pin)
     layers = ((high - d.knee_mount_mm, ALLOYS[_HOUSING].yield_mpa), (d.plate_mm, ALLOYS[_PLATE].yield_mpa))
     return _torque_and_force(pin, *layers)
@@ -88,20 +86,10 @@ def knee_mount(s: Structure) -> tuple[float, float]:
 def hip_mount(s: Structure) -> tuple[float, float]:
     """Return the torque and force that the dowels between the hip actuator's housing and the base's cheek carry."""
     d = s.leg
-    pin = _pins(base_parts(_ANY_LENGTH_M, d), d.hip.mount_dowel, Group.FIXED)
+    pin = _circle(base_parts(_ANY_LENGTH_M, d), Role.PIN, d.hip.mount_dowel.pitch_radius_mm, Group.FIXED)
     low, high = _ends(pin)
     stress = ALLOYS[_HOUSING].yield_mpa, ALLOYS[_PLATE].yield_mpa
     return _torque_and_force(pin, (d.hip_mount_mm - low, stress[0]), (high - d.hip_mount_mm, stress[1]))
-
-
-def _screws(parts: tuple[Part, ...], pitch_radius_mm: float, group: Group) -> Part:
-    """Build the circle of screws with a radius."""
-    (found,) = (
-        part
-        for part in parts
-        if part.role is Role.SCREW and part.group is group and np.isclose(float(part.pitch_radius_mm), pitch_radius_mm)
-    )
-    return found
 
 
 def screws_tightened(s: Structure) -> float:
@@ -110,10 +98,10 @@ def screws_tightened(s: Structure) -> float:
     sprocket = yield_mpa(next(part for part in thigh if part.role is Role.SPROCKET))
     carrier, housing, plate = (ALLOYS[name].yield_mpa for name in (_CARRIER, _HOUSING, _PLATE))
     return min(
-        tightened(_screws(thigh, d.hip.output_pitch_radius_mm, Group.FIXED), carrier, plate),
-        tightened(_screws(thigh, d.knee.output_pitch_radius_mm, Group.KNEE_DRIVE), carrier, sprocket),
-        tightened(_screws(thigh, d.knee.mount_pitch_radius_mm, Group.FIXED), housing, plate),
-        tightened(_screws(base, d.hip.mount_pitch_radius_mm, Group.FIXED), housing, plate),
+        tightened(_circle(thigh, Role.SCREW, d.hip.output_pitch_radius_mm, Group.FIXED), carrier, plate),
+        tightened(_circle(thigh, Role.SCREW, d.knee.output_pitch_radius_mm, Group.KNEE_DRIVE), carrier, sprocket),
+        tightened(_circle(thigh, Role.SCREW, d.knee.mount_pitch_radius_mm, Group.FIXED), housing, plate),
+        tightened(_circle(base, Role.SCREW, d.hip.mount_pitch_radius_mm, Group.FIXED), housing, plate),
     )
 
 

@@ -20,8 +20,7 @@ from pareto_monoped.leg.stop_parts import FOOT_DEPTH, HALF_FOOT, HALF_HEAD, HEAD
 from pareto_monoped.leg.stops import JointStop, hip_seats, hip_stop, knee_stop
 from pareto_monoped.leg.thigh_outline import HEEL_WIDTH, heel_arm_mm
 from pareto_monoped.materials import ALLOYS, MATERIALS
-from pareto_monoped.strength.connections import least_preload_n
-from pareto_monoped.strength.drive import fastening, shank_and_thread_mm
+from pareto_monoped.strength.drive import screw_preload_n
 from pareto_monoped.strength.joint import SIDES, LegJoint, Side, Structure
 
 Capacity = Callable[[Structure], float]
@@ -68,14 +67,7 @@ def lifted_n(screw: Part) -> float:
 
     The rods carry the stop's force. Along them, nothing but the screw holds the seat, against the friction of rubber.
     """
-    grip, _ = shank_and_thread_mm(screw)
-    preload = least_preload_n(
-        fastening(screw),
-        grip,
-        steel_mpa=MATERIALS.steel.youngs_modulus_mpa,
-        clamped_mpa=MATERIALS.aluminium.youngs_modulus_mpa,
-    )
-    return preload / RUBBER_FRICTION
+    return screw_preload_n(screw, MATERIALS) / RUBBER_FRICTION
 
 
 def rod_share(force_at: tuple[float, float], normal_rad: float, rods: tuple[tuple[float, float], ...]) -> float:
