@@ -1,10 +1,6 @@
-"""Settings of the rating after ISO 6336; values and sources stand in ``data/actuator_parts.toml``.
+"""What the gears are rated for and what the joints ask: steels, safeties, duty, forces, pace, and lives under them.
 
-Settings of carriers and planet bearings under ``iso6336``; values and sources in ``data/actuator_parts.toml``.
-
-What the joints ask of an actuator: forces, pace, fit; values and sources stand in ``data/service.toml``.
-
-The duty of a joint as turns per hour, and the life of a bearing under it.
+Values and sources stand in ``data/actuator_parts.toml`` and ``data/service.toml``.
 """
 
 from collections.abc import Sequence

@@ -1,10 +1,8 @@
-"""Ball bearings: catalogue with ratings, choice of the main bearing, the paper's regression of mass over bore.
+"""Ball bearings and retaining rings (DIN 471, DIN 472): catalogues, choice of the main bearing, mass over bore.
 
-Retaining rings of shafts and bores: catalogue after DIN 471 and DIN 472, with the grooves that they need.
-
-Rings with inverted lugs (makers' V-rings) fit the same grooves. They are used here, because thin-section bearings leave
-no room for the others: the eyes of DIN 471 - 40 x 1.75 reach to 24.75 mm and those of DIN 472 - 52 x 2 to 20.8 mm, but
-the shoulder of the outer ring begins at 24.5 mm and that of the inner ring ends at 21 mm.
+Rings with inverted lugs (makers' V-rings) fit the grooves of the standards. They are used here, because thin-section
+bearings leave no room for the others: the eyes of DIN 471 - 40 x 1.75 reach to 24.75 mm and those of DIN 472 - 52 x 2
+to 20.8 mm, but the shoulder of the outer ring begins at 24.5 mm and that of the inner ring ends at 21 mm.
 """
 
 import csv

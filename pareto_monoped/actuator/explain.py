@@ -1,7 +1,4 @@
-"""The actuator map as plain values, for tables and JSON: one row per interval, gaps, and one interval in full.
-
-What a motor is and can do, in words for a table and as plain values for JSON.
-"""
+"""Motors and the actuator map as plain values and words, for tables and JSON."""
 
 import dataclasses
 import math

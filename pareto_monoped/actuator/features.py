@@ -1,14 +1,9 @@
-"""Building blocks of an actuator's parts: slabs, tubes, hole patterns, bearings, notes.
+"""Building blocks of an actuator's parts: slabs, hole patterns, gears, coupling, bearings, encoder, notes.
 
-The encoder at the back of an actuator: a magnet in the end of the motor's shaft, and a sensor in the backplate.
-
-The sensor is RLS's RM08 (data sheet RM08D01): a sealed body of 8 mm diameter and 7 mm length, which reads a magnet of
-4 x 4 mm, magnetised across, over a gap of 1 mm within 0.5 mm. 12 bit per turn of the motor, up to 30,000 rpm. It is
-bonded into a cap, which is bonded into the backplate's bore once the gap is set.
-
-Both joints have the same actuator. At the knee, sensor and cable stand in the journal's bore.
-
-How the teeth of gears and splines are made: what their rating takes for granted, for drawings and parts list.
+The encoder's sensor, RLS's RM08 (data sheet RM08D01), has a sealed body of 8 mm diameter and 7 mm length. It reads a
+magnet of 4 x 4 mm in the end of the motor's shaft, magnetised across, over a gap of 1 mm within 0.5 mm: 12 bit per turn
+of the motor, up to 30,000 rpm. It is bonded into a cap, which is bonded into the backplate's bore once the gap is set.
+At the knee, sensor and cable stand in the journal's bore.
 """
 
 from functools import partial

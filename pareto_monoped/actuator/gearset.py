@@ -1,6 +1,5 @@
-"""Planetary gear sets: teeth, module, planets, and what follows from them alone.
-
-How evenly the planets share the load.
+"""Planetary gear sets: teeth, module, planets, and what follows from them alone, with how evenly planets share the
+load.
 """
 
 from collections.abc import Sequence

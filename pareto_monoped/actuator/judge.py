@@ -1,9 +1,7 @@
-"""What the rules say of thousands of gear sets at once, and what those that matter weigh.
+"""Every gear set that the search looks at, what the rules say of it, and the mass of those that matter.
 
 Most gear sets are ruled out by teeth and room alone. What costs more is worked out for the others only: first the
 layout and the rules that need it, then the mass, and last the rating.
-
-Every gear set that the search looks at: whole tooth numbers, standard modules, planets, profile shifts.
 """
 
 from collections.abc import Mapping

@@ -1,4 +1,5 @@
-"""Radii and heights that both families have in common, for one gear set or for arrays of them.
+"""Radii and heights of both families, for one gear set or for arrays of them: the common front, then what follows
+it.
 
 Actuator frame: z is the gearbox axis. The housing is bolted to what carries it by its face at z = 0. The output flange
 is flush with this face and points to +z; everything lies at z <= 0. From the front:
@@ -6,12 +7,6 @@ is flush with this face and points to +z; everything lies at z <= 0. From the fr
     output flange, main bearing around the carrier | planets between sun and ring | secondary carrier | coupling, motor
 
 In the ISSPG, the stator sits on the ring housing around the gears. In the ESSPG, the motor follows behind them.
-
-Radii and heights of the ESSPG behind the common front: housing, coupling, motor, backplate.
-
-Radii and heights of the ISSPG behind the common front: ring housing, rotor, coupling, rear bearing, backplate.
-
-The sun's shaft: its end in the carrier's end bearing, and the spline by which the motor drives it.
 """
 
 from dataclasses import dataclass

@@ -1,8 +1,7 @@
 """Motors by name or file: the six that ship with the package, a user's own, and those that a study or export stores.
 
-Whether the values of a motor agree with each other and with what can be built: one line for the first that does not.
-
-A motor that is read from a file is checked; one that a study stores is not, because it was accepted once.
+A motor that is read from a file is checked: do its values agree with each other and with what can be built? One that a
+study stores is not, because it was accepted once.
 """
 
 import json

@@ -1,9 +1,7 @@
-"""Rows of loose needle rollers between a planet and its pin: how many, how long, and their ratings.
+"""Needle rollers: rows of loose ones between a planet and its pin, and bearings as bought.
 
 Full complements have no catalogue rating. It follows from the needles by ISO 281 and ISO 76, as makers tell their
 customers to do. Pin and planet are the raceways; planets softer than 58 HRC carry less, by f_H.
-
-Needle roller bearings as bought: catalogue with ratings.
 """
 
 import csv

@@ -1,6 +1,6 @@
 """The result of stage 1: for every interval of ratios the lightest actuator, or the rules that forbid one.
 
-The gearboxes of a robot's joints: hip and knee may have different motors.
+Hip and knee may have different motors, and then have two maps.
 """
 
 from collections.abc import Mapping, Sequence

@@ -1,11 +1,8 @@
 """What a maker does to a part beside its prisms: holes with their threads and mouths, chamfers, countersunk heads.
 
-The cylinders of holes and shafts stand in the prisms of the part. A feature says what they are and adds their cones.
-All heights are along z in the part's frame, in millimetres; every number may be an array of shape (n,).
-
-Cones on cylinders: what a countersink or chamfer takes away, and what a countersunk head adds, with exact integrals.
-
-Millimetres. Every number may be an array of shape (n,), as in ``shapes``.
+The cylinders of holes and shafts stand in the prisms of the part. A feature says what they are and adds their cones,
+with exact integrals. Heights are along z in the part's frame, in millimetres; every number may be an array of shape
+(n,).
 """
 
 from dataclasses import dataclass

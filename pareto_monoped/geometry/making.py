@@ -1,8 +1,6 @@
-"""What a workshop must know of a part besides its shape: fits, and the accuracy of its teeth.
+"""What a workshop must know of a part besides its shape: fits with their limits (ISO 286), and how teeth are made.
 
-Limits of the tolerance classes that the parts use (ISO 286-1 and -2).
-
-How much thinner than drawn the drawings let teeth become. Millimetres.
+Millimetres.
 """
 
 from bisect import bisect_left

@@ -1,7 +1,4 @@
-"""What the leg needs to know of the actuators of one joint: bolt circles, dowels, sizes, and their motor's driver.
-
-The motor drivers that the base can carry, and the choice by the motor's voltage and current.
-"""
+"""What the leg needs to know of the actuators of one joint: bolt circles, dowels, sizes, and the motor's driver."""
 
 from dataclasses import dataclass
 

@@ -1,6 +1,5 @@
-"""The journal on the knee actuator's back, by which the base's far cheek carries the actuator's free end.
-
-The ball bearing that carries both ends of the knee's axle and the knee actuator's free end.
+"""The journal on the knee actuator's back, by which the base's far cheek carries its free end, and the bearing
+there.
 """
 
 from dataclasses import replace

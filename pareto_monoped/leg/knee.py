@@ -33,7 +33,7 @@ AXLE_DOWEL = Dowel(diameter_mm=4.0)  # as many as bolts, in the gaps between the
 _DOWEL_PITCH_RADIUS = 6.8  # 1.2 mm of metal to the bearing's seat
 DOWEL_DEPTH = 7.0  # in the axle: with the plate, 10 mm long ones fit
 # The nut of an axle bolt, M4 (ISO 4032), mm. The bolts are 7.8 mm apart, so that washers of 8 mm have no room.
-# Heads and nuts press the plates less than ``strength.bolted`` allows.
+# Heads and nuts press the plates less than ``strength.threads`` allows.
 _NUT_HEIGHT = 3.2
 _NUT_TURN = np.pi / 12.0  # of its hexagon: each nut turns a flat to one neighbour and a corner to the other
 _NUT_SPARE = 0.7  # by which the bolt stands out of it, one pitch of its thread

@@ -1,9 +1,4 @@
-"""The sandwich that both links are made of: two plates on a core, with windows and bolted bridges between them.
-
-Outlines of the links: windows with round corners, plates around holes.
-
-Outlines with round corners, drawn like a belt around pulleys.
-"""
+"""The sandwich that both links are made of: two plates on a core, with windows, bolted bridges and round outlines."""
 
 import math
 from collections.abc import Sequence

@@ -1,9 +1,9 @@
-"""The sprockets of hip and knee: their teeth (ISO 606) and lightening holes; bore and screw holes of the hip's.
+"""The sprockets of hip and knee (ISO 606), and shaft and needle bearing that support the far side of the knee's
+drive.
 
-The far side of the knee's drive: a hardened shaft through the sprocket, and its needle bearing in the hip coupling.
-
-The chain then pulls between two supports, the knee actuator's main bearing and this one, so that neither has to carry
-a tilting moment. The shaft's flange is clamped between sprocket and drive coupling by the screws of the drive.
+The chain pulls between two supports, the knee actuator's main bearing and this one in the hip coupling, so that neither
+has to carry a tilting moment. The shaft's flange is clamped between sprocket and drive coupling by the screws of the
+drive.
 """
 
 from functools import lru_cache

@@ -1,10 +1,8 @@
-"""The parts of the end stops: bumpers, their seats, and strikers.
+"""The parts of the end stops: bumpers, their seats, and strikers; ``strength.stops`` computes what they carry.
 
 A bumper lies between the end lips of its seat and is bonded to its floor. Seats and strikers of the thigh straddle its
 plates: their wings stand on the plates' edges, which carry the force, and their feet reach in between, where a bolt
 holds them.
-
-What they carry is computed in ``strength.stop_seats``.
 """
 
 from pareto_monoped.geometry.parts import Part, Prism, disc, layer, machined_part

@@ -1,14 +1,12 @@
-"""The end stops of hip and knee: at which angles they meet, and how hard they push back.
+"""The end stops of hip and knee: at which angles they meet, how hard they push back, and where their faces lie.
 
 A stop is a bumper on one link and a flat striker on the other. The bumper is a round bar of elastomer that lies on a
 flat seat, parallel to the joint's axis, and is squeezed sideways. Everything that needs a stop reads it here: the parts
 of the links, the sweep of every export, the joint limits of both robot models, and the simulation.
 
-The flat faces of the end stops: where each seat and each striker lies on its link.
-
 At the end of a joint's range the seat's face and the striker's are parallel, a bumper's diameter apart, and the line on
-which the bumper is squeezed passes the joint's axis at the lever of ``stops.JointStop``. One face of each pair is laid
-out here; the other follows from it by the angle at which they meet.
+which the bumper is squeezed passes the joint's axis at the lever of ``JointStop``. One face of each pair is laid out
+here; the other follows from it by the angle at which they meet.
 """
 
 from dataclasses import dataclass, replace

@@ -1,7 +1,4 @@
-"""The outline of the thigh's plates: two round ends joined by a bar, with ears and a heel for the end stops.
-
-Whether a leg can be built around the actuators of a motor.
-"""
+"""The outline of the thigh's plates, with ears and a heel for the end stops, and whether a leg fits a motor at all."""
 
 import math
 
@@ -25,7 +22,7 @@ _FILLET_GAP = 0.5  # from where a fillet would touch the round end
 _EAR_FOOT = 14.0  # from an ear's end along the bar to the middle of its fillet
 _SPARE = 1.0  # of an edge beyond the seat or striker that stands on it
 _FRONT_FILLET = 31.0  # of the middle of the fillet before the knee above its axis, next to the round end
-HEEL_WIDTH = 22.0  # of the heel's tip; what it carries is computed in ``strength.stop_seats``
+HEEL_WIDTH = 22.0  # of the heel's tip; what it carries is computed in ``strength.stops``
 _HEEL_FILLET = 5.0  # radius, between heel and knee
 
 
@@ -94,7 +91,7 @@ def _hip_fillet(face: Face, top_radius_mm: float) -> Pulley:
     """Return the fillet between an ear's edge and the round end at the hip, which it almost touches.
 
     Raises:
-        DesignError: the ear stands beside the round end; ``motor_fit.require_leg`` refuses such motors.
+        DesignError: the ear stands beside the round end; ``require_leg`` refuses such motors.
     """
     least = _least_hip_radius_mm(face)
     x = least + _FILLET

@@ -1,6 +1,8 @@
 """Fast weighing: the units of a map's actuators as arrays, and those of the links as functions of their length.
 
-Kinetic energy of the parts that turn against the body that carries them.
+A link is one smooth function of its length. Interpolated in Chebyshev points, this function is exact to the last
+digits, and evaluating it takes a few operations for any number of lengths (Trefethen, Approximation Theory and
+Approximation Practice, chapters 3 and 8), where weighing part by part takes thousands of small array operations.
 
 A part with the moment of inertia J about the joint axis that turns at c times the joint's speed, relative to the body
 that carries it, has the absolute speed w_body + c w_joint. Summed over all such parts, the kinetic energy of turning is
@@ -10,12 +12,6 @@ that carries it, has the absolute speed w_body + c w_joint. Summed over all such
 S is part of the body's own inertia. C is the reflected inertia, which MuJoCo calls armature. B couples the joint to the
 rotation of the body. The base does not rotate, so that the coupling matters for the knee actuator only, which the thigh
 carries.
-
-Mass properties that change smoothly with one length, as Chebyshev series.
-
-Weighing a population part by part takes thousands of small array operations. But a link is one smooth function of its
-length. Interpolated in Chebyshev points, this function is exact to the last digits, and evaluating it takes a few
-operations for any number of lengths (Trefethen, Approximation Theory and Approximation Practice, chapters 3 and 8).
 """
 
 import math
@@ -201,7 +197,7 @@ class ActuatorTable:
     continuous_torque_n_m: Floats
     no_load_speed_rad_per_s: Floats
     efficiency: Floats
-    efficiency_total: Floats  #: of the whole gearbox, see ``actuator.service.losses.Losses``
+    efficiency_total: Floats  #: of the whole gearbox, see ``Losses``
 
 
 @lru_cache(maxsize=16)

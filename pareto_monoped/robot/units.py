@@ -1,8 +1,6 @@
-"""The table of units: what a robot is made of, each group of parts described once.
+"""The table of units, what a robot is made of, and the bodies, joints and frames in which they are described.
 
 ``build`` makes the parts of one robot from this table, ``tables`` weighs the same parts for whole populations.
-
-Bodies, joints and the frames that parts and bodies are described in.
 """
 
 from collections.abc import Callable

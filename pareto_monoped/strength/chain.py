@@ -1,13 +1,11 @@
-"""The chain: its breaking load against the largest pull of a jump, and the wear of its joints over the duty.
+"""The chain: its breaking load, the wear of its joints, and studs, threads, bars and forks of its turnbuckles.
 
-Pins and bushes wear by pressure times sliding path (Archard, J. Appl. Phys. 24, 1953). A chain that runs at the
-power that its standard rates may grow by 3 percent in 15,000 hours. A joint here slides far less: once onto its
-sprocket and once off it per jump, so that it bears the pressure in proportion more.
+Pins and bushes wear by pressure times sliding path (Archard, J. Appl. Phys. 24, 1953). A chain that runs at the power
+that its standard rates may grow by 3 percent in 15,000 hours. A joint here slides far less: once onto its sprocket and
+once off it per jump, so that it bears the pressure in proportion more.
 
-The turnbuckles of the chain: studs, threads, bars and forks under the chain's pull.
-
-The pull swells from slack once a jump, in the strand that stops the knee's rotor. A stud, which its locknut holds
-against its bar, then has the amplitude of half the pull.
+The pull swells from slack once per jump, in the strand that stops the knee's rotor. A turnbuckle's stud, which its
+locknut holds against its bar, then has the amplitude of half the pull.
 """
 
 from functools import partial

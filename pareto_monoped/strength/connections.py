@@ -1,10 +1,8 @@
-"""Screw joints after VDI 2230-1 in its short form: least preload, slip, threads, pressure under heads.
+"""What single connections carry: screws (VDI 2230-1 in its short form), dowels, splines, shafts, bonds and press
+fits.
 
-The assembly preload and the torque stand with the screws, in ``geometry.tightening``.
-
-What carries a torque by shape or by bonding: dowels, splines, shafts, bonded cylinders.
-
-Press fits in the elastic range (DIN 7190-1): pressure from interference, yielding of the hub, torque.
+The assembly preload and the torque of screws stand in ``geometry.tightening``. Press fits are those of DIN 7190-1 in
+the elastic range.
 """
 
 from dataclasses import dataclass

@@ -1,9 +1,8 @@
-"""Joints of an actuator's drive: from the motor through coupling, spline and shaft to the sun; planet pins; ring.
+"""Joints of an actuator's drive: motor, coupling, spline, shaft, sun, planet pins, ring, and the second carrier's
+webs.
 
 What turns at the motor's speed carries the gearbox's torque over the ratio: in an end stop, the rotor drives from
 behind, and the output's torque reaches back through the sun as well. All capacities are torques at the output.
-
-The webs between the planets and the screws that clamp the second carrier to them.
 
 The planets press their pins with half of their load into either carrier. What the second carrier gets, half of the
 output's torque, goes back to the first one through the webs; that the pins are clamped as well is not counted.

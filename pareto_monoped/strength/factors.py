@@ -1,8 +1,6 @@
-"""Safety factors of all joints of many robots at once, from capacities that are tabulated per gearbox and per leg.
+"""The table of joints, and the safety factors of all joints of many robots at once.
 
-The table of joints: every row of the strength check, in the order of ``strength.csv``.
-
-The factors of one design, joint by joint, as an export lists them; computed by the functions for populations.
+Capacities are computed once per gearbox and per leg. ``joint_factors`` lists the factors of one design, as exports do.
 """
 
 from collections.abc import Callable, Mapping, Sequence

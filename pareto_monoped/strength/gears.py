@@ -95,7 +95,7 @@ def strike_life_jumps(s: Structure, torque_n_m: float) -> float:
 def lewis_torque_n_m(s: Structure) -> float:
     """Return the output torque at which the sun's teeth reach the allowable bending stress of the rules ``paper``.
 
-    Every mesh of the sun carries an equal share. The stress is that of ``actuator.strength.face_width_mm`` without
+    Every mesh of the sun carries an equal share. The stress is that of ``lewis_width_mm`` without
     service factor and velocity factor: both stand for loads beyond the motor's torque, and here the load is measured.
     """
     actuator, data = s.actuator, s.settings.parts.gears

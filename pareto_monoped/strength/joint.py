@@ -1,6 +1,5 @@
-"""One row of the table of joints: what may fail, under which loads, by which formula, and what is required.
-
-What the parts of a robot have to carry: the loads of its jump, and the lengths that turn forces into moments.
+"""One row of the table of joints: what may fail, under which loads of a jump, by which formula, and what is
+required.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -1,10 +1,8 @@
-"""The knee's axle and bearings: dowels between axle and shank, static load and life of the bearings.
+"""The knee: dowels and bearings of its axle, and shaft and coupling of its drive.
 
-The knee's drive between its two supports: its shaft and coupling under the chain's pull and the gearbox's torque.
-
-The chain pulls in the middle plane. The needle bearing in the hip coupling carries it in front, the actuator's main
-bearing behind, both as pivots. The dowels take the torque from the output flange through coupling and shaft flange to
-the sprocket, so that the stub of the shaft in the needles is bent, but not twisted.
+The chain pulls the drive in the middle plane. The needle bearing in the hip coupling carries it in front, the
+actuator's main bearing behind, both as pivots. The dowels take the torque from the output flange through coupling and
+shaft flange to the sprocket, so that the stub of the shaft in the needles is bent, but not twisted.
 """
 
 from functools import lru_cache

@@ -1,9 +1,7 @@
-"""What carries the end stops: seats and strikers with their bolts, the thigh's heel, the base's rods.
+"""What carries the end stops: bumpers, seats and strikers with their bolts, the thigh's heel, the base's rods.
 
-A stop of torque T pushes with F = T / lever. Every capacity is the torque of a stop at which something yields, in
-elastic theory (straight beams: Roark's Formulas for Stress and Strain, chapter 8).
-
-The bumpers of the end stops: how far a jump squeezes them.
+A stop of torque T pushes with F = T / lever. Every capacity but the bumpers' is the torque of a stop at which something
+yields, in elastic theory (straight beams: Roark's Formulas for Stress and Strain, chapter 8).
 """
 
 from collections.abc import Callable

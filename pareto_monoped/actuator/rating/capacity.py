@@ -1,8 +1,5 @@
-"""Flanks after ISO 6336-2: contact stress, and the load per face width that a flank may carry.
-
-Roots after ISO 6336-3: bending stress, and the load per face width that a root may carry.
-
-Load cycles of the duty, Miner's rule, and the S-N curves of ISO 6336-2 and ISO 6336-3.
+"""What flanks and roots may carry: stresses and limits (ISO 6336-2, -3), S-N curves, and load cycles of the duty
+(-6).
 """
 
 from collections.abc import Mapping

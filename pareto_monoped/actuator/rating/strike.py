@@ -118,7 +118,7 @@ def _passes(
 ) -> Numbers:
     """Return the load cycles per jump at the highest torque that do the damage of the duty and the strike.
 
-    See ``life.equivalent_cycles``, which has the same for the duty alone.
+    See ``equivalent_cycles``, which has the same for the duty alone.
     """
     (share, highest), duty = shares, stage.settings.parts.duty
     factor = stage.settings.parts.rating.application_factor

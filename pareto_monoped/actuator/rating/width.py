@@ -1,9 +1,4 @@
-"""The least face width at which a stage keeps all its safety factors, for thousands of gear sets at once.
-
-Face width from the strength of the sun's teeth: Lewis with Barth's velocity factor.
-
-The face width of a gear set under either set of rules.
-"""
+"""The least face width of gear sets: by all safety factors of a stage, or by Lewis with Barth's velocity factor."""
 
 from collections.abc import Collection
 from dataclasses import dataclass

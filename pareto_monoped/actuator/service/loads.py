@@ -1,15 +1,10 @@
-"""The output of a knee actuator between its two supports: forces, tilt, and what the rules ask of the bearings.
+"""Loads on the bearings of output and planets, and what the rules ask of them, for one actuator or arrays of them.
 
-The chain pulls at the sprocket. The main bearing lies behind it in the actuator, the far bearing in front of it in the
-hip coupling. All functions take one actuator or arrays of them.
-
-A row of balls under a radial force and a tilting moment: how they share the load, and the life that is left.
-
-The static model of ISO/TS 16281 (Harris, Rolling Bearing Analysis, ch. 7): rigid rings, each ball a Hertzian spring
-between the centres of its two grooves. The inner ring moves by ``shift`` along the force and turns by ``tilt`` about
-the axis across it, so that balls on opposite sides are pressed against opposite flanks. Lengths in mm, forces in N.
-
-Load on the planets' bearings, and the face width that they need; for one gear set or for arrays of them.
+The chain pulls at the knee's sprocket. The main bearing lies behind it in the actuator, the far bearing in front of it
+in the hip coupling. The main bearing is a row of balls under a radial force and a tilting moment, by the static model
+of ISO/TS 16281 (Harris, Rolling Bearing Analysis, ch. 7): rigid rings, each ball a Hertzian spring between the centres
+of its two grooves. The inner ring moves by ``shift`` along the force and turns by ``tilt`` about the axis across it, so
+that balls on opposite sides are pressed against opposite flanks. Lengths in mm, forces in N.
 """
 
 from collections.abc import Callable

@@ -1,7 +1,4 @@
-"""The service sheet of one actuator: bearings, bushes, losses, stiffness and backlash, each under the stated duty.
-
-Losses of one actuator by source: tooth meshes, planets on their pins, bearings, churning.
-"""
+"""The service sheet of one actuator under the stated duty: bearings, bushes, losses by source, stiffness, backlash."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
