@@ -272,7 +272,6 @@ def _refuse(quantity: str, value: float, allowed: str) -> None:
 
 @lru_cache(maxsize=1)
 def _catalogue() -> dict[str, tuple[NDArray[np.float64], tuple[str, ...]]]:
-    """Return the shipped catalogue."""
     path = resources.files("pareto_monoped") / "data" / "retaining_rings.csv"
     return read_retaining_rings(path.read_text(encoding="utf-8"))
 

@@ -13,7 +13,7 @@ from pareto_monoped.actuator.motor import PEAK_TO_CONTINUOUS, Motor
 from pareto_monoped.actuator.ratiomap import ActuatorMap, Candidate, MapEntry, cures
 from pareto_monoped.actuator.rules import CONSTRAINTS
 from pareto_monoped.actuator.service.bearing_life import BearingService
-from pareto_monoped.actuator.service.sheet import BushLoad, ServiceSheet
+from pareto_monoped.actuator.service.sheet import ServiceSheet
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Role
 
@@ -93,6 +93,14 @@ class Gap:
     cures: tuple[str, ...]  #: what would help in the first interval
 
 
+_OF_ACTUATOR = (
+    *("face_width_mm", "mass_kg", "peak_torque_n_m", "efficiency", "continuous_torque_n_m"),
+    *("no_load_speed_rad_per_s", "length_mm", "reflected_inertia_kg_m2"),
+)
+_OF_LOSSES = ("efficiency_mesh", "efficiency_planets", "efficiency_bearings", "efficiency_total")
+_OF_SHEET = ("bearing_life_h", "output_tilt_n_m", "backlash_arcmin", "greatest_backlash_arcmin")
+
+
 def summary(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
     """Return one row of the map, for an interval that has a gearbox, with the service sheet of its actuator."""
     actuator = entry.actuator
@@ -102,31 +110,12 @@ def summary(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
         "ratio_low": entry.ratio_low,
         "ratio": actuator.ratio,
         "type": actuator.family,
-        "sun_teeth": gears.sun_teeth,
-        "planet_teeth": gears.planet_teeth,
-        "ring_teeth": gears.ring_teeth,
-        "module_mm": gears.module_mm,
-        "planets": gears.planets,
-        "sun_shift": float(gears.sun_shift),
-        "planet_shift": float(gears.planet_shift),
-        "ring_shift": float(gears.ring_shift),
+        **{name: getattr(gears, name) for name in ("sun_teeth", "planet_teeth", "ring_teeth", "module_mm", "planets")},
+        **{name: float(getattr(gears, name)) for name in ("sun_shift", "planet_shift", "ring_shift")},
         "centre_distance_mm": float(gears.carrier_radius_mm),
-        "face_width_mm": actuator.face_width_mm,
-        "mass_kg": actuator.mass_kg,
-        "peak_torque_n_m": actuator.peak_torque_n_m,
-        "efficiency": actuator.efficiency,
-        "continuous_torque_n_m": actuator.continuous_torque_n_m,
-        "no_load_speed_rad_per_s": actuator.no_load_speed_rad_per_s,
-        "length_mm": actuator.length_mm,
-        "reflected_inertia_kg_m2": actuator.reflected_inertia_kg_m2,
-        "efficiency_mesh": sheet.losses.efficiency_mesh,
-        "efficiency_planets": sheet.losses.efficiency_planets,
-        "efficiency_bearings": sheet.losses.efficiency_bearings,
-        "efficiency_total": sheet.losses.efficiency_total,
-        "bearing_life_h": sheet.bearing_life_h,
-        "output_tilt_n_m": sheet.output_tilt_n_m,
-        "backlash_arcmin": sheet.backlash_arcmin,
-        "greatest_backlash_arcmin": sheet.greatest_backlash_arcmin,
+        **{name: getattr(actuator, name) for name in _OF_ACTUATOR},
+        **{name: getattr(sheet.losses, name) for name in _OF_LOSSES},
+        **{name: getattr(sheet, name) for name in _OF_SHEET},
         "stiffness_n_m_per_rad": sheet.stiffness.stiffness_n_m_per_rad,
         **_caveats(actuator),
         **_safeties(actuator),
@@ -169,7 +158,7 @@ def details(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
         "compliance_rad_per_n_m": dataclasses.asdict(sheet.stiffness),
         "bearings": [_bearing(found) for found in sheet.bearings],
         **{
-            name: _bush(load)
+            name: dataclasses.asdict(load) | {"pv_mpa_m_per_s": load.pv_mpa_m_per_s}
             for name, load in (("bush", sheet.bush), ("bush_duty", sheet.bush_duty))
             if load is not None
         },
@@ -217,6 +206,9 @@ def _best(found: Candidate | None) -> dict[str, Any]:
     return {"gears": None, "mass_kg": None} if found is None else {"gears": str(found.gears), "mass_kg": found.mass_kg}
 
 
+_BEARING = ("force_n", "equivalent_n", "tilt_rad", "life_h", "static_safety", "overload_safety")
+
+
 def _bearing(found: BearingService) -> dict[str, Any]:
     rated = found.bearing
     return {
@@ -225,20 +217,7 @@ def _bearing(found: BearingService) -> dict[str, Any]:
         "size_mm": [rated.inner_diameter_mm, rated.outer_diameter_mm, rated.width_mm],
         "dynamic_rating_n": rated.dynamic_rating_n,
         "static_rating_n": rated.static_rating_n,
-        "force_n": found.force_n,
-        "equivalent_n": found.equivalent_n,
-        "tilt_rad": found.tilt_rad,
-        "life_h": found.life_h,
-        "static_safety": found.static_safety,
-        "overload_safety": found.overload_safety,
-    }
-
-
-def _bush(load: BushLoad) -> dict[str, float]:
-    return {
-        "pressure_mpa": load.pressure_mpa,
-        "speed_m_per_s": load.speed_m_per_s,
-        "pv_mpa_m_per_s": load.pv_mpa_m_per_s,
+        **{name: getattr(found, name) for name in _BEARING},
     }
 
 

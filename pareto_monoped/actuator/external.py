@@ -203,13 +203,11 @@ def _motor_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Actu
 
 
 def _output(motor: Motor) -> HolePattern:
-    """Return the holes in the motor's turning face."""
     assert motor.output_holes is not None
     return motor.output_holes
 
 
 def _output_screw(output: HolePattern) -> Screw:
-    """Return the screw for the motor's turning face."""
     return screw_for(output.diameter_mm, 0.5 * output.diameter_mm + 0.5 * _ROTOR_TAPPED_MM)
 
 

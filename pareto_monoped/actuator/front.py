@@ -293,12 +293,10 @@ def _secondary_carrier(at: Layout, settings: ActuatorSettings, pins: Pattern) ->
 
 
 def _has_webs(at: Layout) -> bool:
-    """Return whether there are webs, or may be in arrays."""
     return bool(np.any(at.webs.present))
 
 
 def _web_holes(at: Layout, radius_mm: float) -> tuple[Pattern, ...]:
-    """Return the holes of the screws into the webs."""
     if not _has_webs(at):
         return ()
     webs = at.webs
@@ -317,7 +315,6 @@ def _web_prisms(at: Layout) -> tuple[Prism, ...]:
 
 
 def _web_threads(at: Layout) -> tuple[Hole, ...]:
-    """Return the tapped holes of the webs."""
     return tuple(
         tapped(WEB_SCREW, (hole,), at.z_secondary_front, _z_tapped(at), enters="low", usable_mm=_WEB_THREAD_MM)
         for hole in _web_holes(at, WEB_SCREW.core)
@@ -325,7 +322,6 @@ def _web_threads(at: Layout) -> tuple[Hole, ...]:
 
 
 def _z_tapped(at: Layout) -> Numbers:
-    """Return the height of the bottoms of the webs' tapped holes."""
     return at.z_secondary_front + _WEB_THREAD_MM + _PIN_SPARE_MM
 
 

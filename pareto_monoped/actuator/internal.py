@@ -120,7 +120,6 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
 
 
 def _bell_holes(settings: ActuatorSettings, radius_mm: float) -> Pattern:
-    """Return the bolt pattern between bell and coupling."""
     coupling = settings.parts.coupling
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=0.5 * coupling.bolt_circle_mm, count=coupling.bolt_count)
 
@@ -205,7 +204,6 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
 
 
 def _flange_dowels(shell: InternalLayout, settings: ActuatorSettings) -> Part:
-    """Build the dowels between ring housing and casing."""
     casing, holes = settings.parts.casing, _flange_dowel_holes(shell, settings)
     return dowel_part(
         "ring_housing_dowel",
@@ -259,7 +257,6 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
 
 
 def _screws(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Build the screws of ring housing, backplate and coupling."""
     casing, coupling, steel = settings.parts.casing, settings.parts.coupling, settings.materials.steel
     mount_bolts = settings.parts.interface.mount_bolt_count
     return (

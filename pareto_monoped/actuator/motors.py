@@ -6,20 +6,16 @@ study stores is not, because it was accepted once.
 
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, fields, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from pareto_monoped.actuator.motor import (
-    AIR_GAP_MM,
-    BELL_THICKNESS_MM,
     MOUNT_BORE_MM,
     OUTPUT_BORE_MM,
-    PEAK_TO_CONTINUOUS,
     FramedMotor,
-    FramelessMotor,
     HolePattern,
     Motor,
     mass_share,
@@ -64,127 +60,100 @@ the radius and 0.4 of the mass, and a thin ring that has the whole mass. The mot
 
 def contradiction(motor: Motor) -> str | None:
     """Return what is wrong with a motor: key, value, what is allowed, cure; None if nothing is."""
-    return next((found for check in _CHECKS if (found := check(motor)) is not None), None)
+    checks = (_wrong_speeds, _wrong_sizes, _wrong_torques, _wrong_masses)
+    return next((found for check in checks for found in check(motor)), None)
 
 
-def _voltage(motor: Motor) -> str | None:
+def _wrong_speeds(motor: Motor) -> Iterator[str]:
     if motor.rated_voltage_v > VOLTAGE_MOST_V:
-        return (
+        yield (
             f"rated_voltage_v = {motor.rated_voltage_v:g}: must be at most {VOLTAGE_MOST_V:g} V, the end of low "
             "voltage; correct it"
         )
-    return None
-
-
-def _speed(motor: Motor) -> str | None:
     rim = 0.5e-3 * motor.outer_diameter_mm * motor.no_load_speed_rad_per_s
     if rim > RIM_SPEED_MOST_M_PER_S:
-        return (
+        yield (
             f"kv_rpm_per_v = {motor.kv_rpm_per_v:g}: the rotor's rim would run at {rim:.4g} m/s with rated_voltage_v = "
             f"{motor.rated_voltage_v:g}, must be at most {RIM_SPEED_MOST_M_PER_S:g} m/s; correct one of them"
         )
-    return None
-
-
-def _torque_constant(motor: Motor) -> str | None:
     given, wanted = motor.torque_constant_n_m_per_a, torque_constant_n_m_per_a(motor.kv_rpm_per_v)
-    if abs(given / wanted - 1.0) <= KV_TOLERANCE:
-        return None
-    cure = "correct one of them or leave out torque_constant_n_m_per_a"
-    for words, factor in (("amplitude", PER_PHASE_AMPLITUDE), ("RMS value", PER_PHASE_RMS)):
-        if abs(given / (factor * wanted) - 1.0) <= _LOOKS_LIKE:
-            cure = f"it looks like that per ampere of the phase current's {words}, divide it by {factor:.4f}"
-    return (
-        f"torque_constant_n_m_per_a = {given:g}: must be within {KV_TOLERANCE:.0%} of {wanted:.4g} N m/A, "
-        f"60 / (2 pi kv_rpm_per_v) with kv_rpm_per_v = {motor.kv_rpm_per_v:g}; {cure}"
-    )
+    if not abs(given / wanted - 1.0) <= KV_TOLERANCE:
+        cure = "correct one of them or leave out torque_constant_n_m_per_a"
+        for words, factor in (("amplitude", PER_PHASE_AMPLITUDE), ("RMS value", PER_PHASE_RMS)):
+            if abs(given / (factor * wanted) - 1.0) <= _LOOKS_LIKE:
+                cure = f"it looks like that per ampere of the phase current's {words}, divide it by {factor:.4f}"
+        yield (
+            f"torque_constant_n_m_per_a = {given:g}: must be within {KV_TOLERANCE:.0%} of {wanted:.4g} N m/A, "
+            f"60 / (2 pi kv_rpm_per_v) with kv_rpm_per_v = {motor.kv_rpm_per_v:g}; {cure}"
+        )
 
 
-def _peak_current(motor: Motor) -> str | None:
-    current = motor.current_a(motor.peak_torque_n_m)
-    needed = motor.terminal_resistance_ohm * current
-    if needed <= motor.rated_voltage_v:
-        return None
-    return (
-        f"peak_torque_n_m = {motor.peak_torque_n_m:.4g}: its current of {current:.4g} A needs {needed:.4g} V in "
-        f"{motor.terminal_resistance_ohm:g} ohm (winding_resistance_ohm), must be at most rated_voltage_v = "
-        f"{motor.rated_voltage_v:g}; correct one of them"
-    )
-
-
-def _shear(motor: Motor) -> str | None:
-    _, outer = motor.stator_diameters_mm
-    body = motor.framed or motor.frameless
-    assert body is not None
-    length = body.length_mm if motor.frameless is None else motor.frameless.length_mm
-    shear_kpa = 1e-3 * motor.peak_torque_n_m / (0.5e-9 * math.pi * outer**2 * length)
-    if shear_kpa <= SHEAR_MOST_KPA:
-        return None
-    return (
-        f"peak_torque_n_m = {motor.peak_torque_n_m:.4g}: would shear an air gap of {outer:.4g} mm by {length:g} mm "
-        f"with {shear_kpa:.4g} kPa, must be at most {SHEAR_MOST_KPA:g} kPa; correct it, kv_rpm_per_v, "
-        "max_continuous_current_a or the motor's size"
-    )
-
-
-def _length(motor: Motor) -> str | None:
+def _wrong_sizes(motor: Motor) -> Iterator[str]:
+    if not motor.outer_diameter_mm >= DIAMETER_LEAST_MM:
+        body = "framed" if motor.frameless is None else "frameless"
+        yield (
+            f"{body}.outer_diameter_mm = {motor.outer_diameter_mm:g}: must be at least {DIAMETER_LEAST_MM:g} mm to "
+            "hold the bolts of its base; choose a larger motor"
+        )
     if motor.framed is not None and motor.framed.length_mm < LENGTH_LEAST_MM:
-        return (
+        yield (
             f"framed.length_mm = {motor.framed.length_mm:g}: must be at least {LENGTH_LEAST_MM:g} mm for face, base "
             "and magnets; correct it or leave out framed"
         )
-    return None
-
-
-def _diameter(motor: Motor) -> str | None:
-    if motor.outer_diameter_mm >= DIAMETER_LEAST_MM:
-        return None
-    body = "framed" if motor.frameless is None else "frameless"
-    return (
-        f"{body}.outer_diameter_mm = {motor.outer_diameter_mm:g}: must be at least {DIAMETER_LEAST_MM:g} mm to hold "
-        "the bolts of its base; choose a larger motor"
-    )
-
-
-def _mount_holes(motor: Motor) -> str | None:
     assert motor.mount_holes is not None
-    return _circle("mount_holes", motor.mount_holes, motor, MOUNT_BORE_MM, "the rear bearing's seat")
-
-
-def _output_holes(motor: Motor) -> str | None:
+    yield from _wrong_circle("mount_holes", motor.mount_holes, motor, MOUNT_BORE_MM, "the rear bearing's seat")
     assert motor.output_holes is not None
-    if motor.framed is None:
-        return None  # only the framed motor's turning face has them
-    return _circle("output_holes", motor.output_holes, motor, OUTPUT_BORE_MM, "the coupling's hub")
+    if motor.framed is not None:  # only the framed motor's turning face has them
+        yield from _wrong_circle("output_holes", motor.output_holes, motor, OUTPUT_BORE_MM, "the coupling's hub")
 
 
-def _circle(key: str, holes: HolePattern, motor: Motor, bore_mm: float, what: str) -> str | None:
+def _wrong_circle(key: str, holes: HolePattern, motor: Motor, bore_mm: float, what: str) -> Iterator[str]:
     circle, hole = holes.pitch_circle_mm, holes.diameter_mm
     most = motor.outer_diameter_mm - hole - 2.0 * HOLE_WALL_MM
     least = bore_mm + hole
     apart = circle * math.sin(math.pi / holes.count)
     if hole > HOLE_MOST_MM:
-        return f"{key}.diameter_mm = {hole:g}: must be at most {HOLE_MOST_MM:g} mm; give smaller holes"
+        yield f"{key}.diameter_mm = {hole:g}: must be at most {HOLE_MOST_MM:g} mm; give smaller holes"
     if circle > most:
-        return (
+        yield (
             f"{key}.pitch_circle_mm = {circle:.4g}: must be at most {most:.4g} mm, so that holes of {hole:g} mm lie "
             f"within outer_diameter_mm = {motor.outer_diameter_mm:g}; correct one of them"
         )
     if circle < least:
-        return (
+        yield (
             f"{key}.pitch_circle_mm = {circle:.4g}: must be at least {least:.4g} mm, with holes of {hole:g} mm around "
             f"{what}, {bore_mm:g} mm across; give a larger circle or smaller holes"
         )
     if apart < hole + HOLE_WALL_MM:
-        return (
+        yield (
             f"{key}.count = {holes.count}: the holes of {hole:g} mm stand {apart:.3g} mm apart on a circle of "
             f"{circle:.4g} mm, must be {hole + HOLE_WALL_MM:g} mm or more; give fewer or smaller holes"
         )
-    return None
 
 
-def _mass(motor: Motor) -> str | None:
-    """Refuse bodies that are lighter than any motor, or heavier than solid metal."""
+def _wrong_torques(motor: Motor) -> Iterator[str]:
+    current = motor.current_a(motor.peak_torque_n_m)
+    needed = motor.terminal_resistance_ohm * current
+    if not needed <= motor.rated_voltage_v:
+        yield (
+            f"peak_torque_n_m = {motor.peak_torque_n_m:.4g}: its current of {current:.4g} A needs {needed:.4g} V in "
+            f"{motor.terminal_resistance_ohm:g} ohm (winding_resistance_ohm), must be at most rated_voltage_v = "
+            f"{motor.rated_voltage_v:g}; correct one of them"
+        )
+    _, outer = motor.stator_diameters_mm
+    body = motor.frameless or motor.framed
+    assert body is not None
+    shear_kpa = 1e-3 * motor.peak_torque_n_m / (0.5e-9 * math.pi * outer**2 * body.length_mm)
+    if not shear_kpa <= SHEAR_MOST_KPA:
+        yield (
+            f"peak_torque_n_m = {motor.peak_torque_n_m:.4g}: would shear an air gap of {outer:.4g} mm by "
+            f"{body.length_mm:g} mm with {shear_kpa:.4g} kPa, must be at most {SHEAR_MOST_KPA:g} kPa; correct it, "
+            "kv_rpm_per_v, max_continuous_current_a or the motor's size"
+        )
+
+
+def _wrong_masses(motor: Motor) -> Iterator[str]:
+    """Find bodies that are lighter than any motor or heavier than solid metal, and what contradicts their masses."""
     low, high = DENSITY_KG_PER_M3
     for key, body in (("framed", motor.framed), ("frameless", motor.frameless)):
         if body is None:
@@ -193,78 +162,30 @@ def _mass(motor: Motor) -> str | None:
         volume_m3 = 0.25e-9 * math.pi * (body.outer_diameter_mm**2 - bore**2) * body.length_mm
         density = body.mass_kg / volume_m3
         if not low <= density <= high:
-            return (
+            yield (
                 f"{key}.mass_kg = {body.mass_kg:g}: {density:.4g} kg/m3 over the motor's size, must be from {low:g} to "
                 f"{high:g} kg/m3, or {low * volume_m3:.3g} to {high * volume_m3:.3g} kg; correct it or the motor's size"
             )
-    return None
-
-
-def _power(motor: Motor) -> str | None:
-    if motor.rated_power_w is None:
-        return None
-    fed = motor.rated_voltage_v * motor.max_continuous_current_a
-    low, high = (share * fed for share in POWER_OVER_INPUT)
-    if low <= motor.rated_power_w <= high:
-        return None
-    return (
-        f"rated_power_w = {motor.rated_power_w:g}: must be from {low:.4g} to {high:.4g} W, {POWER_OVER_INPUT[0]:g} to "
-        f"{POWER_OVER_INPUT[1]:g} times rated_voltage_v times max_continuous_current_a; correct one of them or leave "
-        "it out"
-    )
-
-
-def _inertia(motor: Motor) -> str | None:
-    body = motor.framed or motor.frameless
-    assert body is not None
-    most = body.mass_kg * (0.5e-3 * body.outer_diameter_mm) ** 2
+    low, high = (share * (motor.rated_voltage_v * motor.max_continuous_current_a) for share in POWER_OVER_INPUT)
+    if motor.rated_power_w is not None and not low <= motor.rated_power_w <= high:
+        yield (
+            f"rated_power_w = {motor.rated_power_w:g}: must be from {low:.4g} to {high:.4g} W, {POWER_OVER_INPUT[0]:g} "
+            f"to {POWER_OVER_INPUT[1]:g} times rated_voltage_v times max_continuous_current_a; correct one of them or "
+            "leave it out"
+        )
+    whole = motor.framed or motor.frameless
+    assert whole is not None
+    most = whole.mass_kg * (0.5e-3 * whole.outer_diameter_mm) ** 2
     low, high = (share * most for share in INERTIA_OVER_MASS)
-    if low <= motor.rotor_inertia_kg_m2 <= high:
-        return None
-    return (
-        f"rotor_inertia_kg_m2 = {motor.rotor_inertia_kg_m2:.4g}: must be from {low:.3g} to {high:.3g} kg m2 for one "
-        f"of {body.mass_kg:g} kg and {body.outer_diameter_mm:g} mm; correct it, the motor's mass or its size"
-    )
-
-
-def _thermal(motor: Motor) -> str | None:
+    if not low <= motor.rotor_inertia_kg_m2 <= high:
+        yield (
+            f"rotor_inertia_kg_m2 = {motor.rotor_inertia_kg_m2:.4g}: must be from {low:.3g} to {high:.3g} kg m2 for "
+            f"one of {whole.mass_kg:g} kg and {whole.outer_diameter_mm:g} mm; correct it, the motor's mass or its size"
+        )
     try:
         _ = motor.peak_torque_time_s
     except ValueError as problem:
-        return f"thermal.{problem}"
-    return None
-
-
-_CHECKS: tuple[Callable[[Motor], str | None], ...] = (
-    _voltage,
-    _speed,
-    _torque_constant,
-    _diameter,
-    _length,
-    _mount_holes,
-    _output_holes,
-    _peak_current,
-    _shear,
-    _mass,
-    _power,
-    _inertia,
-    _thermal,
-)
-__all__ = [
-    "AIR_GAP_MM",
-    "BELL_THICKNESS_MM",
-    "PEAK_TO_CONTINUOUS",
-    "FramedMotor",
-    "FramelessMotor",
-    "HolePattern",
-    "Motor",
-    "load_motor",
-    "motor_names",
-    "motor_source",
-    "motor_values",
-    "require_motor_name",
-    "stored_motor",
-]
+        yield f"thermal.{problem}"
 
 
 @lru_cache(maxsize=1)
@@ -316,7 +237,6 @@ def require_motor_name(name_or_path: str, *, key: str = "motor") -> None:
 
 
 def _user_values(name_or_path: str) -> dict[str, Any]:
-    """Return the fields of the motor in a user's file."""
     require_motor_name(name_or_path)
     path = Path(name_or_path)
     values = read_toml(path, what="motor file", error=MotorError)

@@ -142,12 +142,10 @@ def _gently_tightened(screw: Part) -> Part:
 
 
 def _lower_row_mm(d: LegDimensions) -> float:
-    """Return the height y of the board's lower holes."""
     return d.lower_rod_mm[1] + _ABOVE_ROD
 
 
 def _hole_places(driver: MotorDriver, d: LegDimensions) -> tuple[Place, ...]:
-    """Return the board's four mounting holes."""
     x, low = 0.5 * driver.hole_width_mm, _lower_row_mm(d)
     return tuple((side * x, y, 0.0) for y in (low, low + driver.hole_length_mm) for side in (-1.0, 1.0))
 

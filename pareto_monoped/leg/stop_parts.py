@@ -48,7 +48,6 @@ def _half_length_mm(stop: JointStop) -> float:
 
 
 def _bumper(name: str, stop: JointStop, seat: Face, partner: str) -> Part:
-    """Build the bumper on a seat."""
     half, bumper = _half_length_mm(stop), stop.bumper
     return Part(
         name=name,

@@ -54,7 +54,6 @@ def thigh_outline(top_radius_mm: float, length_mm: Numbers, d: LegDimensions) ->
 
 
 def _fillet(y_mm: Numbers, d: LegDimensions) -> Pulley:
-    """Return a fillet on the bar's front edge."""
     return Pulley(x_mm=d.thigh_half_width_mm + _FILLET, y_mm=y_mm, radius_mm=_FILLET, inside=False)
 
 

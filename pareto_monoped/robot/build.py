@@ -88,7 +88,6 @@ def build_robot(design: Design, maps: Maps) -> Robot:
 def _parts(
     kind: ActuatorSized | LinkSized, design: Design, actuators: Mapping[str, Actuator], leg: LegDimensions
 ) -> tuple[Part, ...]:
-    """Build the parts of one unit of this robot."""
     if isinstance(kind, ActuatorSized):
         return kind.parts(actuators[kind.joint], leg)
     return kind.parts(getattr(design, kind.length), leg)

@@ -240,7 +240,6 @@ def actuator_units(joint: str, actuator_map: ActuatorMap, leg: LegDimensions) ->
 
 
 def _stacked(units: Iterable[tuple[Part, ...]]) -> MassProperties:
-    """Return the mass properties of several units, one row per unit."""
     masses = [total(part.mass_properties() for part in parts) for parts in units]
     return MassProperties(
         mass_kg=np.array([m.mass_kg for m in masses]),

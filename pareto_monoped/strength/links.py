@@ -65,7 +65,6 @@ def _linear(heights_of: Any, d: LegDimensions) -> tuple[float, float]:
 
 
 def _yield_mpa(parts: tuple[Part, ...]) -> float:
-    """Return the yield stress of the weakest plate."""
     return min(part.grade.yield_mpa for part in parts if part.role is Role.PLATE and part.grade is not None)
 
 

@@ -64,7 +64,6 @@ def _centres_mm(shape: Circle | Pattern) -> list[tuple[float, float]]:
 
 
 def _tapped(part: Part, diameter_mm: float) -> list[tuple[float, float]]:
-    """Return the axes of a part's threads of one size."""
     centres = [
         centre
         for feature in part.features

@@ -40,7 +40,6 @@ def root_contact_ratio_factor(contact_ratio: Numbers) -> Numbers:
 
 
 def _tip_tangent(gear: ExternalGear | InternalGear) -> Numbers:
-    """Return the tangent of the pressure angle at the tip circle."""
     return np.sqrt(np.square(gear.tip_radius_mm / gear.base_radius_mm) - 1.0)
 
 

@@ -165,7 +165,6 @@ def ratings(stage: Stage, width_mm: Numbers) -> tuple[Rating, ...]:
 
 
 def _planet_gap_mm(gears: GearSet) -> Numbers:
-    """Return the gap between the tips of neighbouring planets."""
     return 2.0 * (gears.carrier_radius_mm * np.sin(np.pi / gears.planets) - gears.planet().tip_radius_mm)
 
 

@@ -136,7 +136,6 @@ def _limits(stage: Stage) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 def _in_mm(steps: NDArray[np.float64], stage: Stage) -> NDArray[np.float64]:
-    """Return the widths in steps, in mm."""
     step = stage.settings.parts.rating.face_step_mm
     # Divided by a whole number where there is one: 123 steps of 0.1 mm are then 12.3 mm to the last bit.
     return steps / round(1.0 / step) if round(1.0 / step) * step == 1.0 else steps * step

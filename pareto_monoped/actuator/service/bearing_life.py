@@ -90,7 +90,6 @@ def bearing_services(
 
 
 def _needles(actuator: Actuator, context: _Context) -> BearingService:
-    """Return the needles of the most loaded planet."""
     settings, gears = context.settings, actuator.gears
     (part,) = (p for p in actuator.parts if p.role is Role.BEARING and p.group is Group.PLANET)
     bearing = as_bearing(
@@ -129,18 +128,8 @@ def _balls(
 ) -> BearingService:
     """Rate a row of balls by the loads of its balls (ISO/TS 16281); ``force`` is at the context's levels."""
     loads = row_load(bearing, force, 0.0 * force, context.service.bearing_clearance_mm)
-    return _rated(
-        place,
-        bearing,
-        force,
-        turns,
-        context,
-        equivalent=loads.equivalent_n,
-        static=loads.static_safety,
-        exponent=3.0,  # ISO 281, clause 5.3
-        friction=context.service.bearing_friction_coefficient,
-        tilt_rad=tilt_rad,
-    )
+    rated = (loads.equivalent_n, loads.static_safety, 3.0)  # ISO 281, clause 5.3
+    return _rated(place, bearing, force, turns, context, *rated, context.service.bearing_friction_coefficient, tilt_rad)
 
 
 def _rollers(
@@ -153,19 +142,8 @@ def _rollers(
     tilt_rad: float = 0.0,
 ) -> BearingService:
     """Rate a roller bearing, whose equivalent load is the radial force (ISO 281, ISO 76)."""
-    static = bearing.static_rating_n / force
-    return _rated(
-        place,
-        bearing,
-        force,
-        turns,
-        context,
-        equivalent=force,
-        static=static,
-        exponent=LIFE_EXPONENT,
-        friction=friction,
-        tilt_rad=tilt_rad,
-    )
+    rated = (force, bearing.static_rating_n / force, LIFE_EXPONENT)
+    return _rated(place, bearing, force, turns, context, *rated, friction, tilt_rad)
 
 
 def _rated(
@@ -174,7 +152,6 @@ def _rated(
     force: Floats,
     turns: float,
     context: _Context,
-    *,
     equivalent: Floats,
     static: Floats,
     exponent: float,

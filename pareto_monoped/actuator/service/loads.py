@@ -248,7 +248,6 @@ def output_margin(output_torque_n_m: Numbers, at: Layout, settings: ActuatorSett
 
 
 def _ratings_n(at: Layout) -> Numbers:
-    """Return C of the main bearing."""
     return _by_bearing(at, lambda bearing, _: np.asarray(bearing.dynamic_rating_n), np.zeros(()))
 
 
@@ -312,7 +311,6 @@ def planet_margin(gears: GearSet, width_mm: Numbers, motor: Motor, settings: Act
 
 
 def _needle_margin(turns: Numbers, force_n: Numbers, width_mm: Numbers, settings: ActuatorSettings) -> Numbers:
-    """Return ``planet_margin`` of needles."""
     rows, service, overload = needle_rows(width_mm, settings), settings.service, settings.parts.rating.overload_factor
     shares = (
         _life_h(turns, force_n, rows.dynamic_rating_n, settings) / service.bearing_life_min_h,
