@@ -106,11 +106,7 @@ def build_actuator(
     width_mm: float | None = None,
     rating: Rating | None = None,
 ) -> Actuator:
-    """Return the actuator around one gear set. No constraint is checked.
-
-    ``width_mm``: face width, if it is known already; default the least that carries the torque; ``rating``: of these
-    gears at this width, if it is known already.
-    """
+    """Build the actuator around a gear set, unchecked; ``width_mm`` and ``rating`` are computed where not given."""
     width = float(face_width_mm(gears, motor, family, settings)) if width_mm is None else width_mm
     at = layout(motor, family, gears, width, settings)
     parts = actuator_parts(at, motor, family, settings)

@@ -187,10 +187,7 @@ def output_turns_per_hour(duty: DutyData, service: ServiceData) -> float:
 
 
 def life_turns(loads_n: Sequence[Numbers], rating_n: Numbers, exponent: float, duty: DutyData) -> Numbers:
-    """Return L10 in turns of the bearing (ISO 281), summed over the duty's levels (Palmgren and Miner).
-
-    ``exponent``: 3 for balls, 10 / 3 for rollers.
-    """
+    """Return L10 in turns (ISO 281, Palmgren, Miner) under the duty; ``exponent``: 3 for balls, 10 / 3 for rollers."""
     whole = sum(duty.output_angles_rad)
     levels = zip(loads_n, duty.output_angles_rad, strict=True)
     used = [angle / whole * (load / rating_n) ** exponent for load, angle in levels]

@@ -133,10 +133,7 @@ def note_with(text: str, *numbers: Numbers) -> str:
 
 
 def slab(z0_mm: Numbers, z1_mm: Numbers, outline: Numbers | Shape, *holes: Numbers | Shape) -> tuple[Prism, ...]:
-    """Build one prism between two heights, from radii or shapes; none if a single slab has no height.
-
-    In arrays every prism is kept: those without height weigh nothing.
-    """
+    """Build one prism from radii or shapes; none if a single slab has no height, which arrays keep."""
     if _is_single(z0_mm) and _is_single(z1_mm) and float(z1_mm) - float(z0_mm) < 1e-9:
         return ()
     shapes = tuple(Circle(radius_mm=hole) if isinstance(hole, float | int | np.ndarray) else hole for hole in holes)
@@ -182,10 +179,7 @@ def casing_holes(at: Layout, settings: ActuatorSettings, radius_mm: float = M3.c
 
 
 def motor_holes(motor: Motor, play_mm: float) -> Pattern:
-    """Return the motor's own mounting pattern.
-
-    ``play_mm``: hole less screw diameter, ``MOTOR_CLEARANCE_HOLE_MM`` or ``MOTOR_TAPPED_HOLE_MM``.
-    """
+    """Return the motor's mounting pattern; ``play_mm`` is hole less screw diameter."""
     holes = motor.mount_holes
     assert holes is not None
     return Pattern(
@@ -194,7 +188,7 @@ def motor_holes(motor: Motor, play_mm: float) -> Pattern:
 
 
 def vents(inner_mm: Numbers, outer_mm: Numbers, wall_mm: float) -> tuple[Pattern, ...]:
-    """As many round holes as fit between two radii, with ``wall_mm`` around each; none if they would be below M3."""
+    """Return as many round holes as fit between two radii, ``wall_mm`` around each; none if they were below M3."""
     radius, middle = 0.5 * (outer_mm - inner_mm) - wall_mm, 0.5 * (outer_mm + inner_mm)
     count = np.floor(np.pi / np.arcsin(np.clip((radius + wall_mm) / middle, 0.01, 1.0)))
     count = np.where(radius >= M3.hole, count, 0.0)[()]
@@ -247,10 +241,7 @@ _CAP_MM = 1.5
 
 
 def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, shaft: str) -> tuple[Part, ...]:
-    """Build the magnet, sensor and cap.
-
-    ``shaft``: name of the part whose end takes the magnet, see ``shaft_end``.
-    """
+    """Build magnet, sensor and cap; ``shaft`` is the part whose end takes the magnet, see ``shaft_end``."""
     z_sensor = z_shaft_mm - _GAP_MM
     return (
         Part(

@@ -44,10 +44,7 @@ _PIN_TO_GROOVE_MM = 0.1
 
 
 def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
-    """Build a planet: recessed on both faces between hub and rim where there is room for it.
-
-    The web is a share of the face width, as is usual for turned blanks.
-    """
+    """Build a planet, recessed on both faces between hub and rim where there is room for it."""
     data = settings.parts.gears
     gears = at.gears
     shape = gears.planet(settings.tooth_thinning_mm(gears.module_mm))

@@ -205,7 +205,7 @@ def _shift_per_tooth(working_angle_rad: Numbers) -> Numbers:
 
 
 def contact_ratios(gears: GearSet) -> tuple[Numbers, Numbers]:
-    """Transverse contact ratios of sun with planet and of planet with ring (Shigley, section 13-6; ISO 21771)."""
+    """Return the transverse contact ratios of both meshes (Shigley, section 13-6; ISO 21771)."""
     pitch = np.pi * gears.module_mm * np.cos(PRESSURE_ANGLE_RAD)
     distance = gears.carrier_radius_mm * np.sin(gears.working_angle_rad)
     ring_distance = gears.carrier_radius_mm * np.sin(gears.ring_working_angle_rad)

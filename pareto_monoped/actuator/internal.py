@@ -220,10 +220,7 @@ def _flange_dowels(shell: InternalLayout, settings: ActuatorSettings) -> Part:
 
 
 def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorSettings) -> Part:
-    """Build the plate at the back with the rear bearing's seat and the motor's own bolt pattern.
-
-    A pad behind that pattern gives its threads their depth.
-    """
+    """Build the plate with the rear bearing's seat and, on a pad that gives threads their depth, the motor's bolts."""
     casing = settings.parts.casing
     holes, rear_seat, z_plate = motor.mount_holes, shell.r_rear_seat, shell.z_plate
     assert holes is not None

@@ -63,10 +63,7 @@ def candidates(room_mm: float, settings: ActuatorSettings) -> GearSet:
 
 
 def _with_shifts(gears: GearSet, room_mm: float, settings: ActuatorSettings) -> GearSet:
-    """Return every gear set with every profile shift of the settings.
-
-    No shift helps planets that do not mesh or a ring beyond the room, so that such sets come with the first shift only.
-    """
+    """Return the gear sets with every shift, and with the first one only if they do not mesh or exceed the room."""
     first, *others = settings.shift_choices
     everything = gears.shifted(*first) if any(first) else gears
     if not others:

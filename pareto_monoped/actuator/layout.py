@@ -86,7 +86,7 @@ def radial_room_mm(motor: Motor, family: Family, settings: ActuatorSettings) -> 
 
 
 def ring_radius_mm(gears: GearSet, family: Family, settings: ActuatorSettings) -> Numbers:
-    """Outer radius of the ring gear: fixed beyond the pitch circle (``paper``), or a rim that grows with the module."""
+    """Return the ring's outer radius: fixed beyond the pitch circle (``paper``), or with a rim of some modules."""
     data = settings.parts.gears
     if settings.rules == "iso6336":
         return gears.ring_root_radius_mm + data.ring_rim_modules * gears.module_mm
@@ -290,10 +290,7 @@ def _coupling_mm(motor: Motor, settings: ActuatorSettings) -> float:
 
 
 def _frame_base_mm(motor: Motor, coupling_mm: float) -> float:
-    """Return the thickness of base and face in the envelope of a framed motor: 3 mm, less for short ones.
-
-    It is more where the face would not hold the coupling's screws by ``_THREAD_SHARE`` of their diameter.
-    """
+    """Return the thickness of a framed motor's base and face: at most 3 mm, or more to hold the coupling's screws."""
     assert motor.framed is not None
     assert motor.output_holes is not None
     least = coupling_mm + _THREAD_SHARE * motor.output_holes.diameter_mm

@@ -64,10 +64,7 @@ class FramedMotor(Strict):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FramelessMotor(Strict):
-    """Stator and rotor alone; the gearbox goes into the stator's bore.
-
-    ``stator_height_mm`` defaults to the length less a bell of 2 mm.
-    """
+    """Stator and rotor alone; the gearbox goes into the stator's bore. Its default height leaves a bell."""
 
     mass_kg: Positive
     outer_diameter_mm: Diameter

@@ -146,7 +146,7 @@ class ActuatorMap:
         )
 
     def interval_index(self, ratios: ArrayLike) -> NDArray[np.intp]:
-        """Index into ``entries`` of the gearbox for each ratio, shape (n,) -> (n,); -1 where there is none."""
+        """Return indices into ``entries`` of the gearboxes for ratios, shape (n,) -> (n,); -1 where there is none."""
         index = _index(np.asarray(ratios, dtype=np.float64))
         inside = (index >= 0) & (index < len(self.entries))
         return np.where(inside, _serving(self)[np.where(inside, index, 0)], -1)
@@ -181,10 +181,7 @@ class ActuatorMap:
         return actuator
 
     def masses_kg(self, family: Family | None = None) -> NDArray[np.float64]:
-        """Return the least mass in every interval, of one family or of both: the curves of the paper's figure.
-
-        Shape (intervals,), to be drawn over ``ratios_low``; NaN where there is no gearbox.
-        """
+        """Return the least mass in every interval, of one family or both, shape (intervals,); NaN without gearbox."""
         masses = np.full(len(self.entries), np.nan)
         for index, entry in enumerate(self.entries):
             bests = [found.best for name, found in entry.families.items() if family in (None, name)]
@@ -234,10 +231,7 @@ def _serving(actuator_map: ActuatorMap) -> NDArray[np.intp]:
 
 
 def cures(entry: MapEntry) -> tuple[str, ...]:
-    """Return what would help where there is no gearbox, for the family that the fewest rules forbid.
-
-    A family that lacks strength alone goes first: its gear sets fit.
-    """
+    """Return what would help the family that the fewest rules forbid, first of all one that lacks strength alone."""
 
     def effort(names: tuple[ConstraintName, ...]) -> tuple[bool, bool, int]:
         return not names, not set(names) <= set(LOAD_RULES), len(names)

@@ -20,7 +20,7 @@ from pareto_monoped.design import DEFAULT_RULES, RuleSet
 
 
 def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[int, FamilyResult]:
-    """The lightest and second lightest set of every interval (in tenths), and what stands in the way of better."""
+    """Return the two lightest sets of every interval (in tenths), and what stands in the way of better."""
     gears = candidates(radial_room_mm(motor, family, settings), settings)
     judged = Judge(motor=motor, family=family, settings=settings).judge(gears)
     names, broken, mass, nearness = judged.names, judged.broken, judged.mass_kg, judged.nearness

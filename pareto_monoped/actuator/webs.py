@@ -67,11 +67,7 @@ class WebSection:
     second_moment_mm4: Numbers  #: of it, against bending around the carrier's axis
 
     def stiffness_n_per_mm(self, length_mm: Numbers, material: ElasticMaterial) -> Numbers:
-        """Return one web's stiffness against a force around the axis, at the second carrier; 0 without webs.
-
-        A beam clamped at both ends, in bending and shear: 1 / k = L^3 / (12 E I) + 1.2 L / (G A). The screw's hole is
-        left out: it lies near the neutral axis.
-        """
+        """Return a web's stiffness against a force around the axis, as a clamped beam; 0 without webs."""
         present = self.present
         area, second = (np.where(present, value, 1.0) for value in (self.area_mm2, self.second_moment_mm4))
         bending = length_mm**3 / (12.0 * material.youngs_modulus_mpa * second)

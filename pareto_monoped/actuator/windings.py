@@ -99,17 +99,11 @@ class ThermalData(Strict):
         return self.winding_limit_degc - self.ambient_degc
 
     def total_k_per_w(self, continuous_heat_w: float) -> float:
-        """Return the thermal resistance with which the winding stays at its limit for ever.
-
-        ``continuous_heat_w``: heat of the winding at 25 C that the continuous current makes.
-        """
+        """Return the resistance that holds the winding at its limit under the continuous current's heat at 25 C."""
         return self.rise_k / (continuous_heat_w * resistance_growth(self.winding_limit_degc))
 
     def lasting_heat_w(self, *, continuous_heat_w: float) -> float:
-        """Return the heat of the winding at 25 C with which it stays at its limit for ever.
-
-        ``continuous_heat_w``: that of the continuous current, which it is without ``housing_to_ambient_k_per_w``.
-        """
+        """Return the heat at 25 C with which the winding stays at its limit, by default the continuous current's."""
         if self.housing_to_ambient_k_per_w is None:
             return continuous_heat_w
         whole = self.winding_to_housing_k_per_w + self.housing_to_ambient_k_per_w

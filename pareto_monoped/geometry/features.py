@@ -209,10 +209,7 @@ def bored(
     enters: Literal["low", "high", "both"],
     pressed: bool = False,
 ) -> Hole:
-    """Return the bores that take a bearing, bush or pin, or another part's step, with a cone where it enters.
-
-    ``pressed``: whether it is pressed in: a lead-in instead of a chamfer.
-    """
+    """Return the bores that take a part, with a chamfer where it enters, or a lead-in if it is pressed in."""
     width, depth = LEAD_IN_MM if pressed else (CHAMFER_MM, CHAMFER_MM)
     mouth = Mouth(radius_mm=shape.radius_mm + width, depth_mm=depth, kind=Cone.LEAD_IN if pressed else Cone.CHAMFER)
     return Hole(
@@ -225,11 +222,7 @@ def bored(
 
 
 def turned(radius_mm: Numbers, face_mm: Numbers, inwards: float, *, pressed: bool = False) -> ShaftEnd:
-    """Return the end of a turned part around its axis, with a cone that leads it into a bore.
-
-    ``inwards``: 1 if its material lies above the face, -1 if below; ``pressed``: whether it is pressed in: a lead-in
-    instead of a chamfer.
-    """
+    """Return a turned part's end with a chamfer or, if pressed, a lead-in; ``inwards`` is 1 above the face."""
     width, depth = LEAD_IN_MM if pressed else (CHAMFER_MM, CHAMFER_MM)
     return ShaftEnd(
         at=Circle(radius_mm=radius_mm),

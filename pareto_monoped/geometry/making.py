@@ -161,9 +161,6 @@ LARGEST_PITCH_DIAMETER_MM = float(_LARGEST_MM[-1])
 
 
 def thickness_tolerance_mm(pitch_diameter_mm: Numbers, series: int) -> Numbers:
-    """By how much a tooth may be thinner than drawn (ring: a space wider), along the pitch circle.
-
-    ``pitch_diameter_mm``: one or an array; beyond the table, its last value counts.
-    """
+    """Return by how much a tooth may be thinner than drawn along the pitch circle; constant beyond the table."""
     place = np.minimum(np.searchsorted(_LARGEST_MM, pitch_diameter_mm), len(_LARGEST_MM) - 1)
     return _TOLERANCE_MM[series][place]

@@ -45,7 +45,7 @@ class Prism:
         return area * (np.asarray(self.z1_mm, dtype=np.float64) - self.z0_mm)
 
     def integrals(self) -> tuple[Numbers, ...]:
-        """Volume integrals of 1, x, y, z, xx, yy, zz, xy, xz, yz about the frame's origin, in mm3, mm4 and mm5."""
+        """Return the integrals of 1, x, y, z, xx, yy, zz, xy, xz, yz about the frame's origin, in mm3, mm4 and mm5."""
         area = self.moments()
         z0, z1 = np.asarray(self.z0_mm, dtype=np.float64), np.asarray(self.z1_mm, dtype=np.float64)
         length, z_first, z_second = z1 - z0, 0.5 * (z1**2 - z0**2), (z1**3 - z0**3) / 3.0
@@ -194,11 +194,7 @@ class MassProperties:
 
 
 def _turned(vectors: NDArray[np.float64], turn: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return every vector along the last axis, rotated.
-
-    Written out because the order of the sum in a matrix product may depend on the number of rows. A robot must weigh
-    the same to the last bit in any population.
-    """
+    """Rotate every vector along the last axis; written out, so that the sum's order does not depend on their number."""
     return np.stack(
         [turn[i, 0] * vectors[..., 0] + turn[i, 1] * vectors[..., 1] + turn[i, 2] * vectors[..., 2] for i in range(3)],
         axis=-1,
@@ -272,10 +268,7 @@ class Part:
         return self.count * len(self.places_mm) * self.unit_mass_kg()
 
     def mass_properties(self) -> MassProperties:
-        """Return all instances together, about the origin of the unit's frame.
-
-        Instances on a circle count as a ring. This is exact for three and more, and for two about the z axis.
-        """
+        """Return all instances about the unit's origin; a circle counts as a ring, exact for three, or two about z."""
         try:
             return _remembered(self)
         except TypeError:  # arrays have no hash

@@ -80,10 +80,7 @@ def clearance(
     *,
     countersunk: Literal["low", "high"] | None = None,
 ) -> Hole:
-    """Return the clearance holes for a screw, if asked for countersunk at one end.
-
-    ``shapes``: as they stand in the prisms; their radius is ``screw.hole``, or that of a sleeve nut.
-    """
+    """Return the clearance holes for a screw, if asked for countersunk at one end; the shapes have their radius."""
     sink = None if countersunk is None else screw.countersink(float(shapes[0].radius_mm))
     return Hole(
         shapes=shapes,
@@ -103,11 +100,7 @@ def tapped(
     enters: Literal["low", "high", "both"],
     usable_mm: Numbers | None = None,
 ) -> Hole:
-    """Return the tapped holes for a screw, chamfered where it enters.
-
-    ``shapes``: as they stand in the prisms; their radius is ``screw.core``; ``usable_mm``: depth of the thread; None:
-    all of the hole.
-    """
+    """Return the tapped holes for a screw, chamfered where it enters; ``usable_mm`` is by default the whole depth."""
     return Hole(
         shapes=shapes,
         low_mm=low_mm,
@@ -131,10 +124,7 @@ def between(outline: Shape, one_mm: Numbers, other_mm: Numbers, *holes: Shape) -
 
 
 def hexagon(flats_mm: float, turn_rad: float = 0.0) -> Path:
-    """Return a hexagon around the origin, drawn sharp, with two of its flats across the x axis.
-
-    Of a circle of screws, flats therefore face the circle's axis.
-    """
+    """Return a hexagon around the origin, drawn sharp, two of its flats across the x axis: it faces a circle's axis."""
     corner = flats_mm / np.sqrt(3.0)
     angles = turn_rad + np.pi / 6.0 + np.pi / 3.0 * np.arange(6)
     return polygon([(float(corner * np.cos(angle)), float(corner * np.sin(angle))) for angle in angles])

@@ -173,10 +173,7 @@ class Path:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spread:
-    """The same path repeated evenly around the origin, turned each time: webs, spokes.
-
-    Moments as of ``Pattern``: exact for three and more.
-    """
+    """The same path repeated evenly around the origin, turned each time: webs, spokes. Moments as of ``Pattern``."""
 
     path: Path  #: one of them, drawn around the +x axis
     count: Numbers  #: how many; those of an array may be 0

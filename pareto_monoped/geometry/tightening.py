@@ -90,10 +90,7 @@ class Fastening:
 
     @property
     def preload_n(self) -> float:
-        """Assembly preload F_M: torsion and tension together reach the share of the proof stress used (eq. R8/1).
-
-        It is less where the nut or the clamped parts allow no more.
-        """
+        """Assembly preload F_M at the share of the proof stress used (eq. R8/1), or what nut and parts allow."""
         thread = self.thread
         slope = thread.pitch_mm / (np.pi * thread.flank_diameter_mm) + 1.155 * FRICTION
         torsion = 1.5 * thread.flank_diameter_mm / thread.stress_diameter_mm * slope

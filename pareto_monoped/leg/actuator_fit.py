@@ -75,10 +75,7 @@ MOTOR_DRIVERS = (
 
 
 def peak_current_a(motor: Motor) -> float:
-    """Return the phase current, as an amplitude, at the motor's peak torque.
-
-    Drivers feed sinusoidal currents and are rated by their amplitude.
-    """
+    """Return the phase current at the motor's peak torque, as an amplitude, by which drivers are rated."""
     return motor.peak_torque_n_m / (PER_PHASE_AMPLITUDE * motor.torque_constant_n_m_per_a)
 
 

@@ -139,10 +139,7 @@ def _fastened(
 
 
 def _piece(y_mm: Numbers, sign: float, reach_mm: Numbers, radius_mm: float, d: LegDimensions) -> tuple[Prism, ...]:
-    """Build a piece of chain as its rows of link plates around a sprocket, and the rollers of its free strands as bars.
-
-    ``sign``: 1 at the hip, where the strands run down from the sprocket; -1 at the knee.
-    """
+    """Build link plates around a sprocket and rollers of the free strands; ``sign`` is 1 at the hip, -1 at the knee."""
     half_inner, half_pin, half_plate = 0.5 * d.chain.inner_width_mm, 0.5 * d.chain.pin_mm, 0.5 * d.chain.plate_mm
     end = reach_mm - half_plate - _GAP
     rows = _around(y_mm, sign, end, radius_mm - half_plate, radius_mm + half_plate)

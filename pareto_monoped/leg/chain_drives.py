@@ -82,10 +82,7 @@ CHAIN_DRIVES = tuple(
 
 
 def chain_drive_for(knee_torque_n_m: float) -> ChainDrive:
-    """Return the smallest chain drive for a motor's largest torque at the knee, with what the knee's stop adds.
-
-    If none is strong enough, it is the strongest one: then ``chain_safety`` bounds the jumps (``strength.chain``).
-    """
+    """Return the smallest drive for the knee's torque with its stop, or the strongest (see ``strength.chain``)."""
     for drive in CHAIN_DRIVES:
         if _STOP_SHARE * knee_torque_n_m <= drive.torque_limit_n_m:
             return drive

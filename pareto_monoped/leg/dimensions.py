@@ -95,18 +95,12 @@ class LegDimensions:
 
     @property
     def first_bridge_mm(self) -> float:
-        """Distance of the thigh's first bridge from the hip axis: 3 mm from its edge to the wider actuator's case.
-
-        Keys for its bolts pass either actuator.
-        """
+        """Distance of the thigh's first bridge from the hip axis: keys for its bolts pass either actuator's case."""
         return max(self.hip.housing_radius_mm, self.knee.housing_radius_mm) + 8.5
 
     @property
     def rod_circle_mm(self) -> float:
-        """Distance of the base's lower rods from the hip axis.
-
-        10.5 mm from the rods to the thigh's round hip end, and enough for its ears at the end of the stops' travel.
-        """
+        """Distance of the base's lower rods from the hip axis: clear of the thigh's hip end and ears."""
         return max(self.rim_radius_mm + 15.5, _LEAST_ROD_CIRCLE_MM)
 
     @property

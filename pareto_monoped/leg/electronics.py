@@ -67,11 +67,7 @@ def board_place(joint: str, face_mm: float, direction: float, d: LegDimensions) 
 
 
 def driver_parts(joint: str, face_mm: Numbers, direction: float, d: LegDimensions) -> tuple[Part, ...]:
-    """Build the driver of one motor on the outside of a cheek, in the frame of the base.
-
-    ``joint``: whose driver it is, ``hip`` or ``knee``: the parts' names begin with it; ``direction``: outwards along z,
-    -1 or 1.
-    """
+    """Build the driver of ``joint`` on the outside of a cheek, in the base's frame; ``direction`` is outwards."""
     driver = d.of(joint).driver
     holes = _hole_places(driver, d)
     back, under = face_mm + direction * DRIVER_PLATE_MM, face_mm + direction * (DRIVER_PLATE_MM + _STANDOFF)

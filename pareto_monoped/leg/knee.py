@@ -109,10 +109,7 @@ def axle_parts(d: LegDimensions) -> tuple[Part, ...]:
 
 
 def _axle(d: LegDimensions) -> Part:
-    """Build the axle and sprocket in one piece: no joint between them has to carry the chain's torque.
-
-    It goes in from the inside of the thigh before the second plate closes the sandwich, as any axle with shoulders.
-    """
+    """Build axle and sprocket in one piece, put in from the inside of the thigh before the second plate closes it."""
     half_gap, half_tooth, shoulder = 0.5 * d.shank_gap_mm, 0.5 * d.chain.sprocket_width_mm, _shoulder_z_mm(d)
     bolts, dowels, blind = axle_holes(), axle_dowels(), half_gap - DOWEL_DEPTH
 
@@ -173,10 +170,7 @@ def _shoulder_z_mm(d: LegDimensions) -> float:
 
 
 def _axle_bolt(d: LegDimensions) -> Part:
-    """Build the bolts through shank plates, spacers and axle.
-
-    They clamp what the dowels carry. The property class is therefore the lowest one, that of the nut.
-    """
+    """Build the bolts through shank plates, spacers and axle; they only clamp, in the lowest property class."""
     face = 0.5 * d.shank_gap_mm + d.shank_plate_mm
     length = float(LENGTHS_MM[2.0 * face + _NUT_HEIGHT + _NUT_SPARE <= LENGTHS_MM][0])
     return steel_part(

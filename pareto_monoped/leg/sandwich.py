@@ -145,10 +145,7 @@ def windows_between(heights: tuple[Numbers, ...], half_width_mm: float) -> tuple
 
 
 def with_rungs(heights: tuple[Numbers, ...]) -> tuple[Numbers, ...]:
-    """Return the bridges of a plate, with a rung as high as these in the middle between every two of them.
-
-    The higher a window, the more its sides bend under a force across the link (``strength.links``).
-    """
+    """Return a plate's bridges with a rung between every two: sides of high windows bend more (``strength.links``)."""
     halves = tuple(height for high, low in pairwise(heights) for height in (high, 0.5 * (high + low)))
     return (*halves, heights[-1])
 

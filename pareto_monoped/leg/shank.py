@@ -54,11 +54,7 @@ def _bottom_mm(flat_mm: Numbers, d: LegDimensions) -> Numbers:
 
 
 def shank_parts(shank_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
-    """Build the shank from knee axis to foot centre, without the rubber foot: fork, core, knee axle, foot block,
-    fasteners.
-
-    ``shank_length_m``: knee axis to the centre of the foot, float or shape (n,).
-    """
+    """Build the shank from knee axis to foot centre, without the foot; the length is a float or of shape (n,)."""
     flat = d.foot_flat_mm - 1000.0 * shank_length_m
     face = 0.5 * d.shank_gap_mm + d.shank_plate_mm
     bridges = bridges_of(1000.0 * shank_length_m, d)

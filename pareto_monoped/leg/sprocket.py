@@ -77,10 +77,7 @@ def relief_holes(d: LegDimensions) -> Pattern:
 
 
 def sprocket_prisms(d: LegDimensions, head_mm: float) -> tuple[Prism, ...]:
-    """Build the sprocket, with holes for its screws and dowels.
-
-    A wide one is counterbored at -z, so that screws of the same length suit any width.
-    """
+    """Build the sprocket; a wide one is counterbored at -z, so that screws of the same length suit any width."""
     half, recess = 0.5 * d.chain.sprocket_width_mm, d.sprocket_recess_mm
 
     def toothed(z0_mm: float, z1_mm: float, screw_radius_mm: float) -> Prism:
@@ -118,10 +115,7 @@ def middle_mm() -> float:
 
 
 def support_parts(d: LegDimensions, flange_radius_mm: float, holes: tuple[Shape, ...]) -> tuple[Part, ...]:
-    """Build the shaft and bearing.
-
-    ``holes``: of the drive's screws, and what lightens the coupling between them.
-    """
+    """Build shaft and bearing; ``holes`` are those of the drive's screws, and what lightens the coupling."""
     half = 0.5 * d.chain.sprocket_width_mm
     bore = Circle(radius_mm=SUPPORT_BORE_RADIUS)
     layers = (

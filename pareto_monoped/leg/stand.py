@@ -53,10 +53,7 @@ def carriage_places(d: LegDimensions) -> tuple[tuple[float, float, float], ...]:
 
 
 def rod_places(d: LegDimensions) -> tuple[tuple[float, float, float], ...]:
-    """Return the rods whose screws hold an arm: the rear lower one and both upper ones.
-
-    The driver's plate then lies on the arm with both of its screws.
-    """
+    """Return the rods whose screws hold an arm: the rear lower one and both upper ones, as of the driver's plate."""
     (x, y), (upper_x, upper_y) = d.lower_rod_mm, d.upper_rod_mm
     return (-x, y, 0.0), (-upper_x, upper_y, 0.0), (upper_x, upper_y, 0.0)
 

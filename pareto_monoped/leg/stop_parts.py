@@ -124,11 +124,7 @@ def thigh_stop_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
 
 
 def shank_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
-    """Build the knee's striker between the plates of the shank's fork, with its bolts.
-
-    It has a head behind the face for either end of the range, each on a bolt, and a web that joins them, so that
-    neither turns on its bolt.
-    """
+    """Build the knee's striker in the shank's fork: a bolted head for either end of the range, and a web between."""
     half_gap = 0.5 * d.shank_gap_mm
     extension, flexion = knee_strikers(d)
     end = knee_stop(d).half_face_mm
@@ -182,7 +178,7 @@ def _striker_outline(d: LegDimensions) -> Path:
 
 
 def base_stop_parts(d: LegDimensions) -> tuple[Part, ...]:
-    """The hip's bumpers with their seats, which hang on the rods, and the screws that hold these on the near cheek."""
+    """Build the hip's bumpers with their seats, which hang on the rods, and the screws into the near cheek."""
     stop = hip_stop(d)
     front, rear = hip_seats(d)
     screw = screw_part(

@@ -79,10 +79,7 @@ _HIP_HALF_FACE = 9.0
 
 
 def hip_stop(d: LegDimensions) -> JointStop:
-    """Return the stops of the hip: 100 degrees to both sides of hanging straight down.
-
-    The bumpers hang on the base's rods, so that the lever grows with the motor.
-    """
+    """Return the stops of the hip: 100 degrees to both sides; their lever grows with the motor, as the rods do."""
     x, y = d.lower_rod_mm
     rod_along_thigh_mm = float(x * np.sin(_HIP_END) - y * np.cos(_HIP_END))  # with the thigh at the end of its range
     return JointStop(
@@ -166,10 +163,7 @@ def hip_strikers(d: LegDimensions) -> tuple[Face, Face]:
 
 
 def hip_seats(d: LegDimensions) -> tuple[Face, Face]:
-    """Return the base's faces for the lower and the upper end of the hip's range, in the base's frame.
-
-    The hip turns the thigh clockwise, seen along -z.
-    """
+    """Return the base's faces for both ends of the hip's range; it turns the thigh clockwise, seen along -z."""
     stop = hip_stop(d)
     lower, upper = (striker.opposite(stop.bumper.diameter_mm) for striker in hip_strikers(d))
     return lower.turned(-stop.lower_rad), upper.turned(-stop.upper_rad)

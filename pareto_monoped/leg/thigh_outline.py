@@ -65,19 +65,13 @@ def _corner(face: Face, end_mm: float, width_mm: float = 0.0) -> Pulley:
 
 
 def outer_hip_radius_mm(d: LegDimensions) -> float:
-    """Return the radius of the outer plate's round end at the hip, which carries the knee actuator.
-
-    Where that actuator is narrower than the hip's, the round end still reaches the ears of the hip's stop.
-    """
+    """Return the radius of the outer plate at the hip: a narrower knee actuator's still reaches the stop's ears."""
     least = _least_hip_radius_mm(thigh_stop_faces(0.0, d)[0])
     return max(d.knee.rim_radius_mm, min(d.rim_radius_mm, least))
 
 
 def hip_short_mm(d: LegDimensions) -> float:
-    """By how much the round end at the hip is too small for the ears of the hip's stop; 0 or less where it is not.
-
-    The other plate's round end is the same for every motor, and larger.
-    """
+    """Return by how much the outer plate's round end is too small for the ears of the hip's stop; 0 or less if not."""
     return _least_hip_radius_mm(thigh_stop_faces(0.0, d)[0]) - outer_hip_radius_mm(d)
 
 
@@ -112,10 +106,7 @@ def _hip_fillet(face: Face, top_radius_mm: float) -> Pulley:
 
 
 def heel_arm_mm(d: LegDimensions) -> float:
-    """Return the distance of the bumper's force from the heel's root, where the fillet begins.
-
-    The fillet lies in front of the edge, on which the seat stands, and almost touches the knee's round end.
-    """
+    """Return the distance of the bumper's force from the heel's root, where the fillet in front of the edge begins."""
     stop = knee_stop(d)
     high = stop.bumper.diameter_mm + WING - _HEEL_FILLET
     return stop.lever_mm - float(np.sqrt((d.knee_radius_mm + _HEEL_FILLET + _FILLET_GAP) ** 2 - high**2))

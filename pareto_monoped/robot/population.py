@@ -171,10 +171,7 @@ def _turning(
 def _unit_masses(
     maps: JointMaps, leg: LegDimensions, values: Floats, rows: Mapping[str, NDArray[np.intp]]
 ) -> dict[str, MassProperties]:
-    """Return the name -> mass properties of every unit in its body frame, one row per design.
-
-    ``rows``: joint -> row of each design's actuator in the joint's table, shape (n,).
-    """
+    """Return every unit's mass properties in its body frame; ``rows`` are each joint's rows of actuators."""
     masses: dict[str, MassProperties] = {}
     for unit in UNITS:
         if isinstance(unit, ActuatorSized):

@@ -116,10 +116,7 @@ class Tabulated:
         return np.asarray((self.low_m <= lengths_m) & (lengths_m <= self.high_m))
 
     def __call__(self, lengths_m: Floats) -> tuple[MassProperties, ...]:
-        """The m units for lengths in the range, shape (n,); a row does not depend on the others.
-
-        It is evaluated by Clenshaw's recurrence, in the same order of operations for each length.
-        """
+        """Return the m units for lengths, shape (n,); Clenshaw's recurrence has the same order for each of them."""
         place = (2.0 * lengths_m - (self.low_m + self.high_m)) / (self.high_m - self.low_m)
         values: Floats = np.asarray(chebval(place, self.coefficients), dtype=np.float64)
         return tuple(_unfolded(values[i : i + _WIDTH]) for i in range(0, len(values), _WIDTH))
@@ -147,10 +144,7 @@ def tabulate(weigh: Weigh, low_m: float, high_m: float) -> Tabulated:
 
 
 def _series(weigh: Weigh, low_m: float, high_m: float, nodes: int) -> Floats:
-    """Return the coefficients of the interpolant in the Chebyshev points of the first kind.
-
-    Summed term by term, because the order of the sum in a matrix product may differ from run to run.
-    """
+    """Return the interpolant's coefficients in Chebyshev points of the first kind, summed in a fixed order."""
     angles = np.pi * (np.arange(nodes) + 0.5) / nodes
     values = _folded(weigh(0.5 * (low_m + high_m) + 0.5 * (high_m - low_m) * np.cos(angles)))
     waves = np.cos(np.outer(np.arange(nodes), angles))
@@ -267,10 +261,7 @@ def _link_table(length: str, leg: LegDimensions) -> Tabulated:
 
 
 def weighed(length: str, leg: LegDimensions, lengths_m: Floats) -> dict[str, MassProperties]:
-    """Return the mass properties of the units that depend on a link length, by name, in their body frames.
-
-    Lengths within the table are interpolated to 12 digits; those beyond its ends are weighed part by part.
-    """
+    """Return mass properties of the units of a link length by name: interpolated to 12 digits, or exact beyond."""
     table = _link_table(length, leg)
     beyond = ~table.covers(lengths_m)
     masses = table(np.clip(lengths_m, table.low_m, table.high_m))

@@ -67,10 +67,7 @@ def stud_yield_n(diameter_mm: float, yield_mpa: float) -> float:
 
 
 def stud_fatigue_n(diameter_mm: float, cycles: float) -> float:
-    """Return the swelling pull that a thread rolled before heat treatment bears so often (VDI 2230-1, 5.5.3).
-
-    The amplitude is 0.85 (150 / d + 45) MPa for two million cycles, and more by the cube root for fewer.
-    """
+    """Return the swelling pull that a rolled thread bears so often: 0.85 (150 / d + 45) MPa (VDI 2230-1, 5.5.3)."""
     amplitude_mpa = 0.85 * (150.0 / diameter_mm + 45.0)
     amplitude_mpa *= (_LIMIT_CYCLES / min(max(cycles, _LEAST_CYCLES), _LIMIT_CYCLES)) ** (1.0 / 3.0)
     force_n: float = 2.0 * amplitude_mpa * thread_size(diameter_mm).stress_area_mm2

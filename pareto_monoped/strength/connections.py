@@ -33,11 +33,7 @@ _PRESSURE = 1.5
 def screw_compliance_mm_per_n(
     thread: ThreadSize, grip_mm: float, *, steel_mpa: float, threaded_into_mpa: float
 ) -> float:
-    """Return the stretch of a screw with thread all along and of the thread that it stands in, per load (eq. R3/1 to
-    R3/7).
-
-    ``threaded_into_mpa``: Young's modulus of what it is driven into.
-    """
+    """Return the stretch per load of a screw threaded all along, and of the thread it stands in (eq. R3/1 to R3/7)."""
     d = thread.diameter_mm
     nominal_mm2 = 0.25 * np.pi * d**2
     head = _HEAD_SHARE * d / (steel_mpa * nominal_mm2)
@@ -110,10 +106,7 @@ def shear_force_n(diameter_mm: float, yield_mpa: float) -> float:
 
 
 def spline_torque_n_m(teeth: float, base_mm: float, tip_mm: float, length_mm: float, yield_mpa: float) -> float:
-    """Return the torque at which the flanks of a spline yield the hub: p = T / (k z h l r_m) (Roloff/Matek, eq. 12.10).
-
-    ``base_mm``: inner radius of the flanks that meet; ``tip_mm``: outer radius of these flanks.
-    """
+    """Return the torque at which a spline's flanks yield the hub: p = T / (k z h l r_m) (Roloff/Matek, eq. 12.10)."""
     height, middle = tip_mm - base_mm, 0.5 * (tip_mm + base_mm)
     return 1e-3 * SPLINE_SHARE * teeth * height * length_mm * middle * yield_mpa
 
@@ -152,10 +145,7 @@ class PressFit:
         return self.diameter_mm / self.hub_mm
 
     def pressure_mpa(self, interference_mm: float, roughness_mm: float = 0.0) -> float:
-        """Return the pressure in the joint: p = (xi - smoothing) / K' of Lame's thick rings, 0 where there is play.
-
-        ``roughness_mm``: sum of Rz of both faces.
-        """
+        """Return p = (xi - smoothing) / K' of Lame's thick rings, 0 with play; ``roughness_mm`` is both Rz."""
         q2 = self.thinness**2
         outer = ((1.0 + q2) / (1.0 - q2) + self.hub.poisson_ratio) / self.hub.youngs_modulus_mpa
         inner = (1.0 - self.pin.poisson_ratio) / self.pin.youngs_modulus_mpa

@@ -82,10 +82,7 @@ def _holds(hole: object, pin: Part) -> bool:
 
 
 def dowel_force_n(pin: Part, *layers: tuple[float, float]) -> float:
-    """Return the transverse force at which the weakest layer of a circle of dowels yields, or the dowels between them.
-
-    ``layers``: of each part that they join: engaged length in mm, yield stress in MPa.
-    """
+    """Return the force at which a layer (engaged length in mm, yield stress in MPa) or a circle's dowels yield."""
     outline = pin.prisms[0].outline
     assert isinstance(outline, Circle)
     diameter = 2.0 * float(outline.radius_mm)

@@ -170,7 +170,7 @@ _MEMBERS = {
 
 
 def safeties(factors: Floats) -> dict[str, Floats]:
-    """Measure of each group: the least factor over required factor of its rows, shape (n,); it holds from 1 up."""
+    """Return the measure of each group, the least factor over required factor of its rows, shape (n,)."""
     shares = factors / _REQUIRED
     return {measure: shares[:, members].min(axis=1, initial=MOST_FACTOR) for measure, members in _MEMBERS.items()}
 
@@ -190,11 +190,7 @@ class JointFactor:
 
 
 def joint_factors(design: Design, maps: Maps, loads: Loads) -> tuple[JointFactor, ...]:
-    """Return the factors of one design in the order of the table; none if its jump failed, because loads are unknown
-    then.
-
-    Rows that only inform are left out where the rules know no such limit.
-    """
+    """Return a design's factors in the order of the table without those unknown; none if its jump failed."""
     factors = strength_factors(design.as_array(), maps, loads)[0]
     known = ~np.isnan(factors)
     if not all(known[k] or joint.informs for k, joint in enumerate(TABLE)):

@@ -19,10 +19,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loads:
-    """Loads of n jumps, each of shape (n,); NaN where a jump failed or a stored study did not measure the load.
-
-    All but the two lengths are measures of the jump, with what they mean in ``measures.MEASURES``.
-    """
+    """Loads of n jumps, each of shape (n,), as in ``measures.MEASURES``; NaN where unknown."""
 
     peak_torque_hip_n_m: Floats  #: of the motor, at the joint, before losses
     peak_torque_knee_n_m: Floats  #: likewise

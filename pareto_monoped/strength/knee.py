@@ -32,10 +32,7 @@ _BEARINGS = 2
 def dowels_n_m(
     count: float, circle_mm: float, diameter_mm: float, layers: tuple[tuple[float, float], ...], pin_mpa: float
 ) -> float:
-    """Return the torque at which a circle of dowels yields a hole, by its mean pressure, or the dowels, in shear.
-
-    ``layers``: depth in mm and yield stress in MPa of each part that a dowel stands in.
-    """
+    """Return the torque at which a circle of dowels yields a hole or itself; layers are depths and yield stresses."""
     holes = min(diameter_mm * depth * stress for depth, stress in layers)
     shear = 0.75 * 0.25 * np.pi * diameter_mm**2 * MISES * pin_mpa  # 4 / 3 of the mean in the middle
     return float(1e-3 * count * circle_mm * min(holes, shear))

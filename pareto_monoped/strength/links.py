@@ -39,10 +39,7 @@ def section_modulus_mm3(half_width_mm: float, window_half_width_mm: float, thick
 
 
 def side_stress_mpa(moment_n_m: Any, axial_n: Any, across_n: Any, clear_mm: Any, plate: "tuple[Any, Any, Any]") -> Any:
-    """Return the stress at the outer edge of one plate beside a window.
-
-    ``plate``: half width, half width of the window, thickness, mm; ``clear_mm``: height of the window.
-    """
+    """Return the stress at the edge of one plate (half width, half width of its window, thickness) beside a window."""
     half, window, thickness = plate
     side = half - window
     bending = 1e3 * moment_n_m / section_modulus_mm3(half, window, thickness)

@@ -37,11 +37,7 @@ def sunk_width_mm(screw: Screw, thickness_mm: float) -> float:
 
 
 def net_section(half_mm: Any, thickness_mm: float, place_mm: float, hole_mm: float) -> tuple[Any, Any]:
-    """Return the section modulus in mm3 and area in mm2 of a plate bent in its plane, across two holes beside its
-    middle.
-
-    ``place_mm``: of either hole from the middle; ``hole_mm``: width of either hole.
-    """
+    """Return section modulus in mm3 and area in mm2 of a plate bent in its plane, across two holes off its middle."""
     second = (2.0 * half_mm) ** 3 / 12.0 - 2.0 * (hole_mm * place_mm**2 + hole_mm**3 / 12.0)
     return thickness_mm * second / half_mm, thickness_mm * (2.0 * half_mm - 2.0 * hole_mm)
 
@@ -56,10 +52,7 @@ def column_mpa(euler_mpa: Any, yield_mpa: Any) -> Any:
 
 
 def bedded_mpa(side_mm: float, thickness_mm: float, bed_mm: float, depth_mm: float, modulus_mpa: float) -> float:
-    """Return the Euler stress of a long strip that a bed holds across its plane: N = 2 sqrt(k E I), k = E b / depth.
-
-    ``depth_mm``: of the bed, to where it does not move.
-    """
+    """Return the Euler stress of a long strip on a bed of a depth: N = 2 sqrt(k E I), k = E b / depth."""
     stiffness = CORE_MPA * bed_mm / depth_mm
     second = side_mm * thickness_mm**3 / 12.0
     return float(2.0 * np.sqrt(stiffness * modulus_mpa * second) / (side_mm * thickness_mm))
@@ -105,7 +98,7 @@ def _circles(holes: tuple[Shape, ...]) -> tuple[Pattern, ...]:
 
 
 def _around_hip(holes: tuple[Shape, ...], thickness_mm: float) -> float:
-    """Torque about the hip's axis that a plate carries through its circles of holes: the least over all circles."""
+    """Return the torque about the hip's axis that a plate carries: the least over all circles of holes."""
     torques = [ring_torque_n_m(holes, float(hole.pitch_radius_mm), thickness_mm) for hole in _circles(holes)]
     for hole in _circles(holes):
         radius, pitch, count = (float(v) for v in (hole.radius_mm, hole.pitch_radius_mm, hole.count))

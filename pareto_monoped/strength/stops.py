@@ -69,10 +69,7 @@ def lifted_n(screw: Part) -> float:
 
 
 def rod_share(force_at: tuple[float, float], normal_rad: float, rods: tuple[tuple[float, float], ...]) -> float:
-    """Return the load of the heavier of two rods over the force that acts on the seat they carry.
-
-    Each takes half of the force, and the couple F e of the force about their middle over their distance.
-    """
+    """Return the load of the heavier of two rods: half of the force, and its couple F e over their distance."""
     (x0, y0), (x1, y1) = rods
     dx, dy = force_at[0] - 0.5 * (x0 + x1), force_at[1] - 0.5 * (y0 + y1)
     arm = abs(dx * np.sin(normal_rad) - dy * np.cos(normal_rad))

@@ -84,10 +84,7 @@ def _spans(part: Part) -> list[tuple[float, float]]:
 
 
 def threaded_mpa(screw: Part, parts: Sequence[Part]) -> float | None:
-    """Return the yield stress of the weakest part that has a screw's thread; None if none of these parts has it.
-
-    A part has it if a tapped hole of the screw's size is on its axis and the part is as high as the screw's end.
-    """
+    """Return the yield stress of the weakest part with a tapped hole for a screw on its axis and height, or None."""
     axis = _axes_mm(screw, [(0.0, 0.0)])[0]
     size = fastening(screw).thread.diameter_mm
     thread = min(screw.prisms, key=lambda p: float(p.outline.radius_mm) if isinstance(p.outline, Circle) else np.inf)

@@ -63,10 +63,7 @@ def flank_factors(material: ElasticMaterial, contact_factor: Numbers, working_an
 
 
 def flank_limit_mpa(steel: GearGrade, mate: GearGrade, life_factor: Numbers, finish_factor: float) -> Numbers:
-    """Return sigma_HG = sigma_H,lim Z_NT Z_L Z_v Z_R Z_W Z_X, the stress at a safety of 1 (ISO 6336-2, clause 5.4).
-
-    ``finish_factor``: Z_L Z_v Z_R; 1 for the static limit.
-    """
+    """Return sigma_HG = sigma_H,lim Z_NT Z_L Z_v Z_R Z_W Z_X at a safety of 1 (ISO 6336-2, clause 5.4)."""
     return steel.flank_limit_mpa * life_factor * finish_factor * work_hardening_factor(steel, mate) * SIZE_FACTOR
 
 
@@ -138,10 +135,7 @@ def mean_stress_factor(steel: GearGrade, form: ToothForm, ratio: Numbers) -> Num
 def root_limit_mpa(
     steel: GearGrade, form: ToothForm, life_factor: Numbers, *, roughness_um: float, bending_factor: Numbers
 ) -> Numbers:
-    """Return sigma_FG = sigma_F,lim Y_ST Y_NT Y_delta rel T Y_R rel T Y_X Y_M, the stress at a safety of 1.
-
-    ``bending_factor``: Y_M: 1 for teeth bent one way, less for those bent both ways.
-    """
+    """Return sigma_FG = sigma_F,lim Y_ST Y_NT Y_delta rel T Y_R rel T Y_X Y_M at a safety of 1 (ISO 6336-3)."""
     surface = notch_sensitivity_factor(steel, form.notch) * roughness_factor(steel, roughness_um)
     return steel.root_limit_mpa * SPECIMEN_FACTOR * life_factor * surface * ROOT_SIZE_FACTOR * bending_factor
 
@@ -190,7 +184,7 @@ ROOT_CURVES: Mapping[Treatment, LifeCurve] = {
 
 
 def highest_share(duty: DutyData) -> float:
-    """The torque share that equivalent cycles belong to: that of the peak torque, or of the highest level above it."""
+    """Return the torque share that equivalent cycles belong to: 1, or the highest level above it."""
     return max(1.0, *duty.torque_shares)
 
 

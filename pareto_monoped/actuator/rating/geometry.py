@@ -149,10 +149,7 @@ def _load_point(gear: ExternalGear | InternalGear, contact_ratio: Numbers) -> tu
 
 
 def external_rim_factor(rim_over_depth: Numbers) -> Numbers:
-    """Return Y_B of sun or planet by the rim's thickness over the tooth depth (ISO 6336-3, clause 9.2).
-
-    The standard ends at a ratio of 0.5; the same curve is used below, where it only grows.
-    """
+    """Return Y_B of sun or planet (ISO 6336-3, clause 9.2), below the standard's 0.5 tooth depths by the same curve."""
     thin = 1.6 * np.log(2.242 / np.maximum(rim_over_depth, 0.1))
     return np.where(rim_over_depth < 1.2, np.maximum(thin, 1.0), 1.0)[()]
 

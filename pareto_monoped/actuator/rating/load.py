@@ -34,20 +34,14 @@ _TORSION_TO_MISALIGNMENT = 1.33
 def dynamic_factor(
     load_n_per_mm: Numbers, speed_m_per_s: Numbers, pinion_teeth: Numbers, ratio: Numbers, accuracy_class: int
 ) -> Numbers:
-    """Return K_V by method C (ISO 6336-1, clause 6.5.3).
-
-    ``load_n_per_mm``: K_A F_t / b.
-    """
+    """Return K_V by method C (ISO 6336-1, clause 6.5.3) for a load K_A F_t / b."""
     pace = 0.01 * speed_m_per_s * pinion_teeth * ratio / np.sqrt(1.0 + np.square(ratio))
     slope = np.where(pace <= 0.2, 2.0, 2.071 - 0.357 * np.minimum(pace, _PACE_MAX))
     return 1.0 + (_K1[accuracy_class] / np.maximum(load_n_per_mm, LIGHT_LOAD_N_PER_MM) + _K2) * pace * slope
 
 
 def pair_stiffness(pinion: ExternalGear, wheel: ExternalGear | InternalGear) -> Numbers:
-    """Return the stiffness c' of one tooth pair under full load, method B (ISO 6336-1, clause 9.3.2).
-
-    A ring counts as a rack without shift.
-    """
+    """Return c' of one tooth pair by method B (ISO 6336-1, clause 9.3.2); a ring counts as a rack without shift."""
     compliance = 0.04723 + 0.15551 / pinion.teeth
     x = pinion.shift
     compliance = compliance - 0.00635 * x - 0.11654 * x / pinion.teeth + 0.00529 * np.square(x)
@@ -137,11 +131,7 @@ def pin_tilt_um(
 
 
 def face_load_factor(misalignment_um: Numbers, face_stiffness: Numbers, load_n_per_mm: Numbers) -> Numbers:
-    """Return K_Hbeta by the mesh's own stiffness (ISO 6336-1, clause 7.3.2): with contact across the face, or on part
-    of it.
-
-    ``misalignment_um``: F_beta,y, after running in; ``load_n_per_mm``: F_m / b, with K_A, K_V and the load sharing.
-    """
+    """Return K_Hbeta (ISO 6336-1, clause 7.3.2) from F_beta,y after running in and F_m / b with K_A, K_V, K_gamma."""
     excess = 0.5 * misalignment_um * face_stiffness / load_n_per_mm
     return np.where(excess <= 1.0, 1.0 + excess, 2.0 * np.sqrt(np.maximum(excess, 1.0)))[()]
 

@@ -116,10 +116,7 @@ def _safeties(
 def _passes(
     stage: Stage, passes_per_rad: Numbers, shares: tuple[Numbers, Numbers], slope: float, *, idler: bool
 ) -> Numbers:
-    """Return the load cycles per jump at the highest torque that do the damage of the duty and the strike.
-
-    See ``equivalent_cycles``, which has the same for the duty alone.
-    """
+    """Return load cycles per jump that do the damage of duty and strike, see ``equivalent_cycles``."""
     (share, highest), duty = shares, stage.settings.parts.duty
     factor = stage.settings.parts.rating.application_factor
 

@@ -211,10 +211,7 @@ def lewis_width_mm(gears: GearSet, motor: Motor, settings: ActuatorSettings) -> 
 
 
 def face_width_mm(gears: GearSet, motor: Motor, family: Family, settings: ActuatorSettings) -> Numbers:
-    """Return the least face width that carries the motor's torque, of one gear set or of arrays of them.
-
-    Under ``paper`` by ``strength``, under ``iso6336`` by ``rating``; there, if no width is enough, the best one.
-    """
+    """Return the least face width that carries the motor's torque; the best one if none does (``iso6336``)."""
     if settings.rules == "paper":
         return lewis_width_mm(gears, motor, settings)
     return np.asarray(least_width_mm(build_stage(gears, motor, family, settings), settings.constraints_off))[()]

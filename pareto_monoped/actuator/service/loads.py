@@ -242,7 +242,7 @@ def output_margins(
 
 
 def output_margin(output_torque_n_m: Numbers, at: Layout, settings: ActuatorSettings) -> Numbers:
-    """The least of ``output_margins`` over what is asked for, less 1; -1 where the catalogue has no main bearing."""
+    """Return the least of ``output_margins`` over what is asked for, less 1; -1 without main bearing."""
     shares = [value / least for value, least in output_margins(output_torque_n_m, at, settings).values()]
     return np.nan_to_num(reduce(np.minimum, shares), nan=0.0) - 1.0
 

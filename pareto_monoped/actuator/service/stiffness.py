@@ -108,10 +108,7 @@ def needle_compliance(actuator: Actuator, settings: ActuatorSettings) -> float:
 
 
 def _shaft_compliance(actuator: Actuator, at: Layout, steel: ElasticMaterial) -> float:
-    """Return the compliance of the sun's shaft from the coupling's front to the middle of the teeth, at the sun.
-
-    The sun's teeth stiffen the shaft; half their width is counted as plain shaft.
-    """
+    """Return the compliance of the sun's shaft from the coupling to the middle of the teeth, counted as plain shaft."""
     coupling = [prism for part in actuator.parts if part.role is Role.COUPLING for prism in part.prisms]
     front = max(float(prism.z1_mm) for prism in coupling)
     turning = [part for part in actuator.parts if part.group is Group.ROTOR and part.role is Role.GEAR]
@@ -154,10 +151,7 @@ def backlash_arcmin(gears: GearSet, thinning_mm: float) -> float:
 
 
 def greatest_backlash_arcmin(gears: GearSet, thinning_mm: float, series: int) -> float:
-    """Return the backlash with every tooth as thin as its tolerance in ``series`` (DIN 3967) allows.
-
-    ``series``: of DIN 3967, for the tolerance of the thickness.
-    """
+    """Return the backlash with every tooth as thin as its tolerance in ``series`` (DIN 3967) allows."""
     sun, planet, ring = (
         float(thickness_tolerance_mm(gears.module_mm * teeth, series))
         for teeth in (gears.sun_teeth, gears.planet_teeth, gears.ring_teeth)
