@@ -17,7 +17,7 @@ from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.planet_bearings import planet_bearing_parts
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.webs import SCREW as WEB_SCREW
-from pareto_monoped.geometry.features import Hole, bored, turned
+from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, ExternalGear
 from pareto_monoped.geometry.making import Fit, limits, raceway_note
 from pareto_monoped.geometry.parts import Part, Prism
@@ -197,7 +197,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     seat = 0.5 * at.end_bearing.outer_diameter_mm
     ring = at.shaft_ring
     z_ring = at.z_bearing_front + ring.thickness_mm
-    body = (
+    body: tuple[Prism, ...] = (
         *slab(-carrier.flange_thickness_mm, 0.0, carrier.flange_radius_mm, seat, threads, dowels),
         *slab(z_ring, -carrier.flange_thickness_mm, at.r_bore, seat, threads, dowels),
         *slab(z_diaphragm, z_ring, ring.r_groove, seat, threads, dowels),
@@ -205,8 +205,11 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
         *slab(z_pins, z_groove, at.r_bore, seat - data.casing.lip_mm),
         *slab(at.z_bearing_back, z_pins, at.r_bore, at.r_carrier_in, pins),
         *slab(at.z_shoulder, at.z_bearing_back, at.r_bore + carrier.shoulder_height_mm, at.r_carrier_in, pins),
-        *_web_prisms(at),
     )
+    web_holes, z_tapped = _web_holes(at, WEB_SCREW.core), at.z_secondary_front + _WEB_THREAD_MM + _PIN_SPARE_MM
+    if web_holes:
+        body += slab(at.z_secondary_front, z_tapped, at.webs.outline, *web_holes)
+        body += slab(z_tapped, at.z_shoulder, at.webs.outline)
     return (
         Part(
             name="carrier",
@@ -229,7 +232,10 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                 bored(Circle(radius_mm=seat), z_diaphragm, 0.0, enters="high"),
                 bored(pins, at.z_shoulder, z_pins, enters="low", pressed=True),
                 turned(at.r_bore, -carrier.flange_thickness_mm, -1.0),
-                *_web_threads(at),
+                *(
+                    tapped(WEB_SCREW, (hole,), at.z_secondary_front, z_tapped, enters="low", usable_mm=_WEB_THREAD_MM)
+                    for hole in web_holes
+                ),
             ),
         ),
         _secondary_carrier(at, settings, pins),
@@ -289,42 +295,16 @@ def _secondary_carrier(at: Layout, settings: ActuatorSettings, pins: Pattern) ->
     )
 
 
-def _has_webs(at: Layout) -> bool:
-    return bool(np.any(at.webs.present))
-
-
 def _web_holes(at: Layout, radius_mm: float) -> tuple[Pattern, ...]:
-    if not _has_webs(at):
-        return ()
     webs = at.webs
-    return (Pattern(radius_mm=radius_mm, pitch_radius_mm=webs.r_screw_mm, count=webs.count, phase_rad=webs.phase_rad),)
-
-
-def _web_prisms(at: Layout) -> tuple[Prism, ...]:
-    """Build the webs of the carrier, tapped from behind."""
-    if not _has_webs(at):
+    if not np.any(webs.present):  # of arrays, any may have webs
         return ()
-    z_tapped = _z_tapped(at)
-    return (
-        *slab(at.z_secondary_front, z_tapped, at.webs.outline, *_web_holes(at, WEB_SCREW.core)),
-        *slab(z_tapped, at.z_shoulder, at.webs.outline),
-    )
-
-
-def _web_threads(at: Layout) -> tuple[Hole, ...]:
-    return tuple(
-        tapped(WEB_SCREW, (hole,), at.z_secondary_front, _z_tapped(at), enters="low", usable_mm=_WEB_THREAD_MM)
-        for hole in _web_holes(at, WEB_SCREW.core)
-    )
-
-
-def _z_tapped(at: Layout) -> Numbers:
-    return at.z_secondary_front + _WEB_THREAD_MM + _PIN_SPARE_MM
+    return (Pattern(radius_mm=radius_mm, pitch_radius_mm=webs.r_screw_mm, count=webs.count, phase_rad=webs.phase_rad),)
 
 
 def _web_screws(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     """Build the screws that clamp the second carrier to the webs from behind."""
-    if not _has_webs(at):
+    if not _web_holes(at, WEB_SCREW.core):
         return ()
     return (
         screw_part(

@@ -60,11 +60,6 @@ class Constraint:
     of_width: bool = False  #: whether it looks at the face width
 
 
-def _meshing(sets: CandidateSets) -> Numbers:
-    gears = sets.gears
-    return -((gears.sun_teeth + gears.ring_teeth) % gears.planets)
-
-
 def _no_interference(sets: CandidateSets) -> Numbers:
     gears = sets.gears
     reach = 4.0 * gears.carrier_radius_mm * np.sin(np.pi / gears.planets)
@@ -92,14 +87,6 @@ def _tip_thickness(sets: CandidateSets) -> Numbers:
         return thinnest - least * gears.module_mm
 
     return _of_shifted(sets.gears, margin)
-
-
-def _gearbox_diameter(sets: CandidateSets) -> Numbers:
-    return radial_room_mm(sets.motor, sets.family, sets.settings) - 2.0 * sets.gears.ring_pitch_radius_mm
-
-
-def _ring_root(sets: CandidateSets) -> Numbers:
-    return radial_room_mm(sets.motor, sets.family, sets.settings) - 2.0 * sets.gears.ring_root_radius_mm
 
 
 def _root_fillet(sets: CandidateSets) -> Numbers:
@@ -137,20 +124,11 @@ def _planet_rim(sets: CandidateSets) -> Numbers:
     return sets.gears.planet().root_radius_mm - bore - 1.2 * (ADDENDUM + DEDENDUM) * sets.gears.module_mm
 
 
-def _ring_rim(sets: CandidateSets) -> Numbers:
-    return sets.around.r_ring - sets.gears.ring_root_radius_mm - 3.5 * sets.gears.module_mm
-
-
 def _ring_interference(sets: CandidateSets) -> Numbers:
     ring = sets.gears.ring()
     reach = sets.gears.carrier_radius_mm * np.sin(sets.gears.ring_working_angle_rad)
     spare_mm: Numbers = ring.tip_radius_mm - np.sqrt(np.square(ring.base_radius_mm) + np.square(reach))
     return spare_mm
-
-
-def _contact_ratio(sets: CandidateSets) -> Numbers:
-    outer, inner = contact_ratios(sets.gears)
-    return np.minimum(outer, inner) - sets.settings.contact_ratio_min
 
 
 def _within_stator(sets: CandidateSets) -> Numbers:
@@ -162,20 +140,12 @@ def _within_stator(sets: CandidateSets) -> Numbers:
     return kit.stator_height_mm - sets.face_width_mm
 
 
-def _bearing(sets: CandidateSets) -> Numbers:
-    return np.where(np.isfinite(sets.around.r_bore), 0.0, -1.0)
-
-
 def _bearing_room(sets: CandidateSets) -> Numbers:
     if sets.family == "ISSPG":
         # The seat in front of the stator and its flange must stay inside the casing's bolts and rim.
         data = sets.settings.parts.casing
         return sets.around.r_casing - (sets.around.r_seat + data.ring_wall_mm + data.flange_width_mm)
     return sets.around.r_ring - sets.settings.parts.casing.ring_lip_mm - sets.around.r_seat
-
-
-def _face_width(sets: CandidateSets) -> Numbers:
-    return face_limit_mm(sets.gears, sets.settings) - sets.face_width_mm
 
 
 def _strength(rule: str) -> Callable[[CandidateSets], Numbers]:
@@ -190,10 +160,6 @@ def _strength(rule: str) -> Callable[[CandidateSets], Numbers]:
     return margin
 
 
-def _output_bearing(sets: CandidateSets) -> Numbers:
-    return output_margin(sets.gears.ratio * sets.motor.peak_torque_n_m, sets.around, sets.settings)
-
-
 def _planet_bearing(sets: CandidateSets) -> Numbers:
     if sets.strength is not None and "planet_bearing" in sets.strength:
         return sets.strength["planet_bearing"]
@@ -202,7 +168,9 @@ def _planet_bearing(sets: CandidateSets) -> Numbers:
 
 _RATED: tuple[RuleSet, ...] = ("iso6336",)
 CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
-    "meshing": Constraint(_meshing, ("another number of planets",),
+    "meshing": Constraint(
+        lambda s: -((s.gears.sun_teeth + s.gears.ring_teeth) % s.gears.planets),
+        ("another number of planets",),
         says="(Ns + Nr) / n_p is whole, so that evenly spread planets mesh", source="paper, III (eq. 3)"),
     "no_interference": Constraint(_no_interference, ("a smaller planet_gap_mm", "fewer planets"),
         says="2 m (Ns + Np) sin(pi / n_p) - 2 m Np >= delta_p, so that planets keep clear of each other",
@@ -213,10 +181,14 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
     "tip_thickness": Constraint(_tip_thickness, ("less profile shift",), rule_sets=_RATED,
         says="tips of sun and planets at least 0.4 modules thick",
         source="Niemann/Winter, Maschinenelemente II; limit in data/actuator_parts.toml, table rating"),
-    "gearbox_diameter": Constraint(_gearbox_diameter, ("a wider motor", "a smaller module"),
+    "gearbox_diameter": Constraint(
+        lambda s: radial_room_mm(s.motor, s.family, s.settings) - 2.0 * s.gears.ring_pitch_radius_mm,
+        ("a wider motor", "a smaller module"),
         says="m Nr <= D_GB: the ring's pitch circle stays inside motor diameter less clearance",
         source="paper, V (eq. 5)"),
-    "ring_root": Constraint(_ring_root, ("a wider motor", "a smaller module"),
+    "ring_root": Constraint(
+        lambda s: radial_room_mm(s.motor, s.family, s.settings) - 2.0 * s.gears.ring_root_radius_mm,
+        ("a wider motor", "a smaller module"),
         says="m (Nr + 2.5) <= D_GB: so does the ring's root circle",
         source="implied by the paper's section IV-A: the families end at 6:1 and 8.7:1; root circle after ISO 53"),
     "root_fillet": Constraint(_root_fillet, ("less profile shift", "more teeth"), rule_sets=_RATED,
@@ -229,23 +201,31 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
     "planet_rim": Constraint(_planet_rim, ("a smaller bore of the planets", "a larger module"),
         says="wall between the planet's bore and its roots >= 1.2 tooth depths",
         source="AGMA 2001-D04, rim thickness factor 1"),
-    "ring_rim": Constraint(_ring_rim, ("a thicker ring", "a smaller module"), laid_out=True,
+    "ring_rim": Constraint(
+        lambda s: s.around.r_ring - s.gears.ring_root_radius_mm - 3.5 * s.gears.module_mm,
+        ("a thicker ring", "a smaller module"), laid_out=True,
         says="wall behind the ring's roots >= 3.5 modules",
         source="ISO 6336-3, rim thickness factor 1 of internal gears"),
     "ring_interference": Constraint(_ring_interference, ("more planet teeth", "profile shift"),
         says="the ring's tips meet the planet's flanks outside its base circle",
         source="involute interference of internal gears: Colbourne, The Geometry of Involute Gears, ch. 8"),
-    "contact_ratio": Constraint(_contact_ratio, ("more teeth",),
+    "contact_ratio": Constraint(
+        lambda s: np.minimum(*contact_ratios(s.gears)) - s.settings.contact_ratio_min,
+        ("more teeth",),
         says="contact ratio of either mesh at least 1.2", source="Shigley, section 13-6"),
     "within_stator": Constraint(_within_stator, ("a longer stator", "a stronger steel", "more planets"), of_width=True,
         says="face width <= height of the stator that the gears sit in (ISSPG)",
         source="paper, section II-A: the ISSPG is integrated within the stator"),
-    "bearing": Constraint(_bearing, ("a larger bearing in the catalogue",), laid_out=True,
+    "bearing": Constraint(
+        lambda s: np.where(np.isfinite(s.around.r_bore), 0.0, -1.0),
+        ("a larger bearing in the catalogue",), laid_out=True,
         says="the catalogue has a main bearing of the bore needed", source="bearing catalogue, ISO 15"),
     "bearing_room": Constraint(_bearing_room, ("a bearing of smaller section", "a wider motor"), laid_out=True,
         says="the main bearing passes the ring's shoulder (ESSPG), its seat stays inside the casing (ISSPG)",
         source="assembly"),
-    "face_width": Constraint(_face_width, ("a larger sun", "a larger face_over_sun_max"),
+    "face_width": Constraint(
+        lambda s: face_limit_mm(s.gears, s.settings) - s.face_width_mm,
+        ("a larger sun", "a larger face_over_sun_max"),
         says="face width <= 1.5 sun diameters and 40 modules",
         source="Niemann/Winter, Maschinenelemente II; limits in data/actuator_parts.toml, table rating",
         rule_sets=_RATED, of_width=True),
@@ -259,7 +239,9 @@ CONSTRAINTS: Mapping[ConstraintName, Constraint] = {
     "overload_strength": Constraint(_strength("overload_strength"), ("a softer end stop", "a stronger steel"),
         says="S_H and S_F at least those required against static failure under one overload",
         source="ISO 6336-2 and -3, static limits", rule_sets=_RATED, of_width=True),
-    "output_bearing": Constraint(_output_bearing, ("a larger sprocket", "a stronger bearing in the catalogue"),
+    "output_bearing": Constraint(
+        lambda s: output_margin(s.gears.ratio * s.motor.peak_torque_n_m, s.around, s.settings),
+        ("a larger sprocket", "a stronger bearing in the catalogue"),
         says="L10, s0 and tilt of both bearings of the knee's output keep their limits",
         source="ISO 281, ISO 76, SKF; limits in data/service.toml", rule_sets=_RATED, laid_out=True),
     "planet_bearing": Constraint(_planet_bearing, ("more planets", "a wider face", "thicker pins"),

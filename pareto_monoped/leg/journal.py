@@ -8,7 +8,7 @@ from pareto_monoped.geometry.features import turned
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, disc, steel_part, strong_part
 from pareto_monoped.geometry.roles import Role
-from pareto_monoped.geometry.screws import Screw, screw_for, screw_part
+from pareto_monoped.geometry.screws import screw_for, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.sandwich import Place
@@ -67,7 +67,8 @@ def journal_parts(
     back = d.knee_mount_mm + 1000.0 * knee_actuator_length_m
     flange, seat = _flange_z_mm(knee_actuator_length_m, d), far_cheek_z_mm(knee_actuator_length_m, d)
     bore = Circle(radius_mm=d.bearing_bore_radius_mm - _WALL)
-    screw = _motor_screw(d.knee.back_screw_mm)
+    # Its core fits the threads that the actuator draws, 0.8 mm below nominal.
+    screw = screw_for(d.knee.back_screw_mm, 0.5 * d.knee.back_screw_mm - 0.4)
     holes = Pattern(radius_mm=screw.hole, pitch_radius_mm=d.knee.back_pitch_radius_mm, count=d.knee.back_holes)
     return (
         strong_part(
@@ -95,8 +96,3 @@ def journal_parts(
             note="into the knee motor's own mounting pattern",
         ),
     )
-
-
-def _motor_screw(diameter_mm: float) -> Screw:
-    """The cap screw for holes of a motor; its core fits the threads that the actuator draws, 0.8 mm below nominal."""
-    return screw_for(diameter_mm, 0.5 * diameter_mm - 0.4)

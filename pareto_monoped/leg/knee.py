@@ -110,7 +110,11 @@ def axle_parts(d: LegDimensions) -> tuple[Part, ...]:
 
 def _axle(d: LegDimensions) -> Part:
     """Build axle and sprocket in one piece, put in from the inside of the thigh before the second plate closes it."""
-    half_gap, half_tooth, shoulder = 0.5 * d.shank_gap_mm, 0.5 * d.chain.sprocket_width_mm, _shoulder_z_mm(d)
+    half_gap, half_tooth, shoulder = (
+        0.5 * d.shank_gap_mm,
+        0.5 * d.chain.sprocket_width_mm,
+        0.5 * d.gap_mm - d.bearing_width_mm,
+    )
     bolts, dowels, blind = axle_holes(), axle_dowels(), half_gap - DOWEL_DEPTH
 
     def both(radius_mm: float, low_mm: float, high_mm: float, *holes: Pattern) -> tuple[Prism, Prism]:
@@ -162,11 +166,6 @@ def _spacer(d: LegDimensions) -> Part:
         places_mm=((0.0, 0.0, half_thigh_gap), (0.0, 0.0, -half_gap)),
         note="clamps the bearing's inner ring; 0.05 mm longer than nominal",
     )
-
-
-def _shoulder_z_mm(d: LegDimensions) -> float:
-    """Return the height z of the axle's shoulder, on which the bearing's inner ring sits."""
-    return 0.5 * d.gap_mm - d.bearing_width_mm
 
 
 def _axle_bolt(d: LegDimensions) -> Part:

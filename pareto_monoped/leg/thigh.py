@@ -65,9 +65,10 @@ def thigh_parts(thigh_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     """
     length = 1000.0 * thigh_length_m
     bridges = bridges_of(length, d)
+    small = d.knee.mount_pitch_radius_mm < _STANDOFF_PITCH_RADIUS + _STANDOFF_ROOM
     standoffs = tuple(
         (_STANDOFF_PITCH_RADIUS * float(np.cos(angle)), _STANDOFF_PITCH_RADIUS * float(np.sin(angle)), 0.0)
-        for angle in _standoff_angles(d)
+        for angle in (_SMALL_STANDOFF_ANGLES if small else _STANDOFF_ANGLES)
     )
     bolts = (*bolts_at(bridges), *thigh_stop_bolts(length, d))
     return (
@@ -80,11 +81,6 @@ def thigh_parts(thigh_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         *knee_bearings(length, d),
         *thigh_stop_parts(length, d),
     )
-
-
-def _standoff_angles(d: LegDimensions) -> tuple[float, ...]:
-    small = d.knee.mount_pitch_radius_mm < _STANDOFF_PITCH_RADIUS + _STANDOFF_ROOM
-    return _SMALL_STANDOFF_ANGLES if small else _STANDOFF_ANGLES
 
 
 def _plates(

@@ -37,11 +37,6 @@ def in_body(properties: MassProperties, turn: Floats, z_mm: float) -> MassProper
     return properties.placed(PART_TO_BODY @ turn, move)
 
 
-def _middle_plane(leg: LegDimensions) -> float:
-    """Return the height of a unit whose origin lies in the middle plane of the leg."""
-    return 0.0
-
-
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class UnitKind:
     """A row of the table: which body carries the unit, and where."""
@@ -49,8 +44,8 @@ class UnitKind:
     name: str  #: unique
     body: str  #: the body that carries it, one of ``BODIES``
     turn: Floats  #: rotation from the unit's frame to the body's part frame
-    #: Where the unit's origin lies on the body's proximal joint axis, in the body's part frame, for a leg
-    z_mm: Callable[[LegDimensions], float] = _middle_plane
+    #: Where the unit's origin lies on the body's proximal joint axis, in the body's part frame; default: in the middle
+    z_mm: Callable[[LegDimensions], float] = lambda leg: 0.0
     #: Added to the mass of its body after all other units. The last bit of a sum depends on its order, and so do the
     #: results of stored studies.
     weighed_last: bool = False
@@ -78,10 +73,6 @@ class LinkSized(UnitKind):
     parts: Callable[[Numbers, LegDimensions], tuple[Part, ...]]
 
 
-def _base_frame(knee: Actuator, leg: LegDimensions) -> tuple[Part, ...]:
-    return base_parts(1e-3 * knee.length_mm, leg)
-
-
 def _journal(knee: Actuator, leg: LegDimensions) -> tuple[Part, ...]:
     # Screws into the motor of an ESSPG pass through its backplate first; an ISSPG has the threads in the backplate.
     clearance_mm = knee.mount.back_depth_mm if knee.family == "ESSPG" else 0.0
@@ -89,7 +80,13 @@ def _journal(knee: Actuator, leg: LegDimensions) -> tuple[Part, ...]:
 
 
 UNITS: tuple[ActuatorSized | LinkSized, ...] = (
-    ActuatorSized(name="base_frame", body="base", turn=UPRIGHT, joint="knee", parts=_base_frame),
+    ActuatorSized(
+        name="base_frame",
+        body="base",
+        turn=UPRIGHT,
+        joint="knee",
+        parts=lambda knee, leg: base_parts(1e-3 * knee.length_mm, leg),
+    ),
     ActuatorSized(
         name="hip_actuator",
         body="base",

@@ -52,10 +52,6 @@ def wear_n(drive: ChainDrive, jumps: float) -> float:
     return _PRESSURE_MPA * drive.bearing_area_mm2 * rated_m / duty_m
 
 
-def _wear(s: Structure) -> float:
-    return wear_n(s.leg.chain, s.settings.parts.duty.jumps)
-
-
 BAR, FORK = ALLOYS["aw_7075_t6"], ALLOYS["c45_qt"]
 _LIMIT_CYCLES = 2e6  # N_D of VDI 2230-1
 _LEAST_CYCLES = 1e4  # below, VDI 2230-1 gives no fatigue strength
@@ -123,7 +119,8 @@ JOINTS = (
         formula="breaking load / pull", source="ISO 606, least tensile strength",
         required_source="makers' catalogues and DIN 8150: static safety of 5 to 7 under shocks, for chains up to "
         "3 m/s"),
-    _row(name="chain_wear", required=1.0, parts=_CHAIN, capacity=_wear,
+    _row(name="chain_wear", required=1.0, parts=_CHAIN,
+        capacity=lambda s: wear_n(s.leg.chain, s.settings.parts.duty.jumps),
         formula="p A s / (s_duty F), with s the sliding path of a pin",
         source="Archard, J. Appl. Phys. 24 (1953); allowed pressure: 17 percent below that of ASME B29.1",
         required_source="the peak is taken for all of the path; 3 percent are within the travel of the turnbuckles"),

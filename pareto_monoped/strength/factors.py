@@ -3,7 +3,7 @@
 Capacities are computed once per gearbox and per leg. ``joint_factors`` lists the factors of one design, as exports do.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Literal
@@ -67,12 +67,10 @@ class Capacities:
         return np.array([self.columns[k].start for k in _PLAIN[of]], dtype=np.intp)
 
 
-def _of(joint: ActuatorJoint | LegJoint) -> Of:
-    return joint.side if isinstance(joint, ActuatorJoint) else "leg"
-
-
 _OWNERS: tuple[Of, ...] = (*SIDES, "leg")
-_ROWS: dict[Of, tuple[int, ...]] = {of: tuple(k for k, joint in enumerate(TABLE) if _of(joint) == of) for of in _OWNERS}
+_ROWS: dict[Of, tuple[int, ...]] = {
+    of: tuple(k for k, joint in enumerate(TABLE) if getattr(joint, "side", "leg") == of) for of in _OWNERS
+}
 # Most joints have one capacity over one load. They are computed in one operation, which is several times as fast.
 _PLAIN: dict[Of, tuple[int, ...]] = {
     of: tuple(k for k in rows if TABLE[k].factor is over and len(TABLE[k].loads) == 1) for of, rows in _ROWS.items()
@@ -105,7 +103,9 @@ def capacities(maps: JointMaps) -> Capacities:
         key = (joint.capacity, one, own)
         if key not in found:
             chosen = structures[one] if own else structures[one][:1]
-            found[key] = _all(joint.capacity, chosen)
+            capacity = joint.capacity
+            numbers = capacity.of(chosen) if isinstance(capacity, Together) else [capacity(s) for s in chosen]
+            found[key] = np.array([np.atleast_1d(number) for number in numbers], dtype=np.float64)
         return found[key]
 
     columns: list[slice] = [slice(0)] * len(TABLE)
@@ -123,17 +123,6 @@ def _rows(actuator_map: ActuatorMap) -> NDArray[np.intp]:
     present = [entry.actuator is not None for entry in actuator_map.entries]
     places: NDArray[np.intp] = np.maximum(np.cumsum(present) - 1, 0)
     return places
-
-
-def _all(capacity: Callable[[Structure], float | tuple[float, ...]], structures: Sequence[Structure]) -> Floats:
-    """Return the capacities of some structures, shape (structures, numbers of the capacity)."""
-    values = capacity.of(structures) if isinstance(capacity, Together) else [capacity(s) for s in structures]
-    return np.array([_numbers(value) for value in values])
-
-
-def _numbers(capacity: float | Sequence[float]) -> tuple[float, ...]:
-    values = (capacity,) if isinstance(capacity, int | float) else tuple(capacity)
-    return tuple(float(value) for value in values)
 
 
 def strength_factors(designs: ArrayLike, maps: Maps, loads: Loads) -> Floats:

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.rating.capacity import (
     FLANK_CURVES,
     ROOT_CURVES,
@@ -147,6 +146,9 @@ def rate(stage: Stage, width_mm: float) -> Rating:
 def ratings(stage: Stage, width_mm: Numbers) -> tuple[Rating, ...]:
     """Return the ratings of all gear sets of a stage, each at its face width."""
     sun, ring = zip(stage.loads(width_mm), stage.overloads(width_mm), strict=True)
+    gears = stage.gears
+    # Between the tips of neighbouring planets.
+    gap_mm = 2.0 * (gears.carrier_radius_mm * np.sin(np.pi / gears.planets) - gears.planet().tip_radius_mm)
 
     def one(place: int) -> Rating:
         def number(value: Numbers) -> float:
@@ -154,7 +156,7 @@ def ratings(stage: Stage, width_mm: Numbers) -> tuple[Rating, ...]:
 
         return Rating(
             face_width_mm=number(width_mm),
-            planet_gap_mm=number(_planet_gap_mm(stage.gears)),
+            planet_gap_mm=number(gap_mm),
             highest_share=highest_share(stage.settings.parts.duty),
             overload_share=stage.overload_share,
             sun_mesh=_mesh(stage, stage.sun_mesh, *sun, number),
@@ -162,10 +164,6 @@ def ratings(stage: Stage, width_mm: Numbers) -> tuple[Rating, ...]:
         )
 
     return tuple(map(one, range(np.size(width_mm))))
-
-
-def _planet_gap_mm(gears: GearSet) -> Numbers:
-    return 2.0 * (gears.carrier_radius_mm * np.sin(np.pi / gears.planets) - gears.planet().tip_radius_mm)
 
 
 def _drawn(stage: Stage, gear: str) -> ExternalGear | InternalGear:

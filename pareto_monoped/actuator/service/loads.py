@@ -231,7 +231,16 @@ def output_margins(
     levels = [_tabulated(at, share * main, service, 0) for share in duty.torque_shares]
     rollers = life_turns([share * far for share in duty.torque_shares], support.dynamic_rating_n, LIFE_EXPONENT, duty)
     return {
-        "main life": (life_turns(levels, _ratings_n(at), 3.0, duty) / per_hour, service.bearing_life_min_h),
+        "main life": (
+            life_turns(
+                levels,
+                _by_bearing(at, lambda bearing, _: np.asarray(bearing.dynamic_rating_n), np.zeros(())),
+                3.0,
+                duty,
+            )
+            / per_hour,
+            service.bearing_life_min_h,
+        ),
         "main s0": (_tabulated(at, main, service, 1), service.static_safety_min),
         "main overload s0": (_tabulated(at, overload * main, service, 1), service.overload_static_safety_min),
         "far life": (rollers / per_hour, service.bearing_life_min_h),
@@ -245,10 +254,6 @@ def output_margin(output_torque_n_m: Numbers, at: Layout, settings: ActuatorSett
     """Return the least of ``output_margins`` over what is asked for, less 1; -1 without main bearing."""
     shares = [value / least for value, least in output_margins(output_torque_n_m, at, settings).values()]
     return np.nan_to_num(reduce(np.minimum, shares), nan=0.0) - 1.0
-
-
-def _ratings_n(at: Layout) -> Numbers:
-    return _by_bearing(at, lambda bearing, _: np.asarray(bearing.dynamic_rating_n), np.zeros(()))
 
 
 def _tabulated(at: Layout, force_n: Numbers, service: ServiceData, column: int) -> Numbers:
@@ -289,11 +294,6 @@ def planet_force_n(gears: GearSet, output_torque_n_m: Numbers, settings: Actuato
 def planet_turns(gears: GearSet) -> Numbers:
     """Return the turns of a planet against the carrier over the output's (Willis, ring fixed)."""
     return gears.ring_teeth / gears.planet_teeth
-
-
-def needle_life_h(gears: GearSet, force_n: Numbers, dynamic_rating_n: Numbers, settings: ActuatorSettings) -> Numbers:
-    """Return L10 of a planet's needles under the duty; ``force_n`` is that at the peak torque."""
-    return _life_h(planet_turns(gears), force_n, dynamic_rating_n, settings)
 
 
 def _life_h(turns: Numbers, force_n: Numbers, dynamic_rating_n: Numbers, settings: ActuatorSettings) -> Numbers:
