@@ -23,6 +23,7 @@ class _Shifts(NamedTuple):
     ring: Numbers
 
 
+_COUNTS, _SHIFTS = ("sun_teeth", "planet_teeth", "ring_teeth", "module_mm", "planets"), ("centre_shift", "sun_shift")
 _UNSHIFTED = _Shifts(PRESSURE_ANGLE_RAD, PRESSURE_ANGLE_RAD, 0.0, 0.0)
 
 
@@ -138,21 +139,14 @@ class GearSet:
             ring_teeth=int(np.asarray(self.ring_teeth)[index]),
             module_mm=float(np.asarray(self.module_mm)[index]),
             planets=int(np.asarray(self.planets)[index]),
-            centre_shift=float(self._spread(self.centre_shift)[index]),
-            sun_shift=float(self._spread(self.sun_shift)[index]),
+            **{name: float(self._spread(getattr(self, name))[index]) for name in _SHIFTS},
         )
 
     def where(self, mask: NDArray[np.bool_] | NDArray[np.intp]) -> "GearSet":
         """Return the sets at a mask or at indices."""
-        return GearSet(
-            sun_teeth=np.asarray(self.sun_teeth)[mask],
-            planet_teeth=np.asarray(self.planet_teeth)[mask],
-            ring_teeth=np.asarray(self.ring_teeth)[mask],
-            module_mm=np.asarray(self.module_mm)[mask],
-            planets=np.asarray(self.planets)[mask],
-            centre_shift=self._spread(self.centre_shift)[mask] if self.is_shifted else 0.0,
-            sun_shift=self._spread(self.sun_shift)[mask] if self.is_shifted else 0.0,
-        )
+        teeth = {name: np.asarray(getattr(self, name))[mask] for name in _COUNTS}
+        shifts = {name: self._spread(getattr(self, name))[mask] if self.is_shifted else 0.0 for name in _SHIFTS}
+        return GearSet(**teeth, **shifts)
 
     def _spread(self, value: Numbers) -> NDArray[np.float64]:
         """Return a shift as an array of the sets' shape."""

@@ -8,11 +8,12 @@ from itertools import pairwise
 import numpy as np
 
 from pareto_monoped.geometry.features import CountersunkHead
-from pareto_monoped.geometry.parts import Part, steel_part
+from pareto_monoped.geometry.parts import Part, layer, steel_part
 from pareto_monoped.geometry.roles import Role
-from pareto_monoped.geometry.screws import Screw, cylinder, screw_length_mm
-from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Shape
+from pareto_monoped.geometry.screws import M3, Screw, cylinder, screw_length_mm
+from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Shape, rectangle
 from pareto_monoped.geometry.tightening import LOCKER, Fastening
+from pareto_monoped.materials import MATERIALS
 
 
 def rounded(*, half_width_mm: Numbers, high_mm: Numbers, low_mm: Numbers, corner_mm: Numbers) -> Path:
@@ -141,6 +142,34 @@ def windows_between(heights: tuple[Numbers, ...], half_width_mm: float) -> tuple
     return tuple(
         rounded(half_width_mm=half_width_mm, high_mm=high - BRIDGE, low_mm=low + BRIDGE, corner_mm=corner_mm)
         for high, low in pairwise(heights)
+    )
+
+
+def core_part(
+    name: str,
+    top_mm: Numbers,
+    end_mm: Numbers,
+    gap_mm: float,
+    half_widths_mm: tuple[float, float],
+    bridges: tuple[Numbers, ...],
+) -> Part:
+    """Build the printed core between two plates; ``half_widths_mm`` are its own and that of its windows."""
+    half, window = half_widths_mm
+    return Part(
+        name=name,
+        role=Role.CORE,
+        material=MATERIALS.printed_plastic,
+        process="3D printed",
+        prisms=(
+            layer(
+                rectangle(width_mm=2.0 * half, height_mm=top_mm - end_mm, y_mm=0.5 * (top_mm + end_mm)),
+                -0.5 * gap_mm,
+                0.5 * gap_mm,
+                *windows_between(bridges, window),
+                *holes_at(bolts_at(bridges), sleeve_hole(M3)),
+            ),
+        ),
+        note="print lying on a plate side, solid; bond to both plates with epoxy, so that they cannot buckle",
     )
 
 

@@ -15,6 +15,7 @@ from pareto_monoped.leg.sandwich import (
     Pulley,
     belt,
     bolts_at,
+    core_part,
     holes_at,
     rounded,
     sleeve_bolt,
@@ -57,11 +58,14 @@ def shank_parts(shank_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     """Build the shank from knee axis to foot centre, without the foot; the length is a float or of shape (n,)."""
     flat = d.foot_flat_mm - 1000.0 * shank_length_m
     face = 0.5 * d.shank_gap_mm + d.shank_plate_mm
-    bridges = bridges_of(1000.0 * shank_length_m, d)
+    bridges, core = (
+        bridges_of(1000.0 * shank_length_m, d),
+        (d.shank_core_half_width_mm, d.shank_core_window_half_width_mm),
+    )
     foot_bolts = tuple((0.0, flat + up, 0.0) for up in (_BLOCK_BOLT, _BLOCK_HEIGHT - _BLOCK_BOLT))
     return (
         *_plates(flat, bridges, foot_bolts, d),
-        _core(bridges[1] - BRIDGE, bridges, d),
+        core_part("shank_core", -d.fork_mm, bridges[1] - BRIDGE, d.shank_gap_mm, core, bridges),
         sleeve_bolt("shank_bolt", M3, face, bolts_at(bridges), plate_on_core_mm=d.shank_plate_mm),
         *axle_parts(d),
         _foot_block(flat, foot_bolts, d),
@@ -123,30 +127,6 @@ def _outline(flat_mm: Numbers, d: LegDimensions) -> Path:
             Pulley(x_mm=d.shank_top_radius_mm + _EAR_FILLET, y_mm=_EAR_FOOT, radius_mm=_EAR_FILLET, inside=False),
             Pulley(x_mm=x, y_mm=y, radius_mm=_EAR_RADIUS),
         )
-    )
-
-
-def _core(end_mm: Numbers, bridges: tuple[Numbers, ...], d: LegDimensions) -> Part:
-    """Build the printed core between the plates, from the fork to the foot's block."""
-    return Part(
-        name="shank_core",
-        role=Role.CORE,
-        material=MATERIALS.printed_plastic,
-        process="3D printed",
-        prisms=(
-            layer(
-                rectangle(
-                    width_mm=2.0 * d.shank_core_half_width_mm,
-                    height_mm=-d.fork_mm - end_mm,
-                    y_mm=0.5 * (end_mm - d.fork_mm),
-                ),
-                -0.5 * d.shank_gap_mm,
-                0.5 * d.shank_gap_mm,
-                *windows_between(bridges, d.shank_core_window_half_width_mm),
-                *holes_at(bolts_at(bridges), sleeve_hole(M3)),
-            ),
-        ),
-        note="print lying on a plate side, solid; bond to both plates with epoxy, so that they cannot buckle",
     )
 
 

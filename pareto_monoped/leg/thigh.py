@@ -10,7 +10,7 @@ from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, disc, layer, machined_part, sheet_part
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import M3, M25, clearance, screw_part, tapped
-from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape, rectangle
+from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
 from pareto_monoped.leg.chain import chain_parts
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.hip import hip_joints
@@ -20,6 +20,7 @@ from pareto_monoped.leg.sandwich import (
     BRIDGE,
     Place,
     bolts_at,
+    core_part,
     holes_at,
     sleeve_bolt,
     sleeve_hole,
@@ -29,7 +30,6 @@ from pareto_monoped.leg.sandwich import (
 from pareto_monoped.leg.sprocket import BOSS_RADIUS
 from pareto_monoped.leg.stop_parts import thigh_stop_bolts, thigh_stop_parts
 from pareto_monoped.leg.thigh_outline import outer_hip_radius_mm, thigh_outline
-from pareto_monoped.materials import MATERIALS
 
 # Our own layout, mm.
 _KNEE_END = 34.0  # from the knee axis to the core above it, clear of the sprocket's teeth
@@ -64,7 +64,7 @@ def thigh_parts(thigh_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     ``thigh_length_m``: hip axis to knee axis, float or shape (n,).
     """
     length = 1000.0 * thigh_length_m
-    bridges = bridges_of(length, d)
+    bridges, core = bridges_of(length, d), (d.thigh_core_half_width_mm, d.thigh_core_window_half_width_mm)
     small = d.knee.mount_pitch_radius_mm < _STANDOFF_PITCH_RADIUS + _STANDOFF_ROOM
     standoffs = tuple(
         (_STANDOFF_PITCH_RADIUS * float(np.cos(angle)), _STANDOFF_PITCH_RADIUS * float(np.sin(angle)), 0.0)
@@ -73,7 +73,7 @@ def thigh_parts(thigh_length_m: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     bolts = (*bolts_at(bridges), *thigh_stop_bolts(length, d))
     return (
         *_plates(length, bridges, bolts, standoffs, d),
-        _core(length, bridges, d),
+        core_part("thigh_core", BRIDGE - d.first_bridge_mm, _KNEE_END - length, d.gap_mm, core, bridges),
         *_standoffs(standoffs, d),
         sleeve_bolt("thigh_bolt", M3, d.thigh_face_mm, bolts, plate_on_core_mm=d.plate_mm),
         *hip_joints(d),
@@ -167,27 +167,6 @@ def outer_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
         Pattern(radius_mm=M3.hole, pitch_radius_mm=d.knee.mount_pitch_radius_mm, count=d.knee.mount_holes),
         d.knee.mount_dowel,
         Pattern(radius_mm=relief, pitch_radius_mm=outside_mm - relief, count=6),
-    )
-
-
-def _core(length: Numbers, bridges: tuple[Numbers, ...], d: LegDimensions) -> Part:
-    """Build the printed core between the plates, from the first bridge to the knee's sprocket."""
-    top, end = BRIDGE - d.first_bridge_mm, _KNEE_END - length
-    return Part(
-        name="thigh_core",
-        role=Role.CORE,
-        material=MATERIALS.printed_plastic,
-        process="3D printed",
-        prisms=(
-            layer(
-                rectangle(width_mm=2.0 * d.thigh_core_half_width_mm, height_mm=top - end, y_mm=0.5 * (top + end)),
-                -0.5 * d.gap_mm,
-                0.5 * d.gap_mm,
-                *windows_between(bridges, d.thigh_core_window_half_width_mm),
-                *holes_at(bolts_at(bridges), sleeve_hole(M3)),
-            ),
-        ),
-        note="print lying on a plate side, solid; bond to both plates with epoxy, so that they cannot buckle",
     )
 
 

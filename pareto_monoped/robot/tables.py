@@ -194,6 +194,9 @@ class ActuatorTable:
     efficiency_total: Floats  #: of the whole gearbox, see ``Losses``
 
 
+_OF_ACTUATORS = ("peak_torque_n_m", "continuous_torque_n_m", "no_load_speed_rad_per_s", "efficiency")
+
+
 @lru_cache(maxsize=16)
 def actuator_table(actuator_map: ActuatorMap) -> ActuatorTable:
     """Return the actuators of a map in numbers. The result is kept, as a map is asked for many times."""
@@ -206,10 +209,7 @@ def actuator_table(actuator_map: ActuatorMap) -> ActuatorTable:
         coupling_kg_m2=np.array([actuator_coupling_kg_m2(a) for a in actuators]),
         rotor_inertia_kg_m2=np.array([rotor_inertia_kg_m2(a) for a in actuators]),
         rotor_excess_kg_m2=np.array([rotor_excess_kg_m2(a) for a in actuators]),
-        peak_torque_n_m=np.array([a.peak_torque_n_m for a in actuators]),
-        continuous_torque_n_m=np.array([a.continuous_torque_n_m for a in actuators]),
-        no_load_speed_rad_per_s=np.array([a.no_load_speed_rad_per_s for a in actuators]),
-        efficiency=np.array([a.efficiency for a in actuators]),
+        **{name: np.array([getattr(a, name) for a in actuators]) for name in _OF_ACTUATORS},
         efficiency_total=np.array([service_sheet(a, actuator_map.settings).losses.efficiency_total for a in actuators]),
     )
 

@@ -131,6 +131,6 @@ def _passes(
 
 
 def _reversal(stage: Stage, highest: Numbers) -> Numbers:
-    """Return the highest torque against the push over that of the push, see ``life.reversal_ratio``."""
+    """Return the highest torque against the push over that of the push, see ``reversal_ratio``."""
     backward = max((level for level, _ in stage.settings.parts.duty.reversed_levels), default=0.0)
     return stage.settings.parts.rating.application_factor * backward / highest
