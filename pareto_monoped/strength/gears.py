@@ -124,37 +124,21 @@ _TEETH: dict[str, tuple[str, Callable[..., Any]]] = {
     ),
 }
 _ONCE = tuple(
-    ActuatorJoint(
-        name=f"{side}_gear_{tooth}",
-        group="gears",
-        side=side,
-        formula=f"T_limit / T, with the static safety of rating.overload_{tooth}_safety at T_limit",
-        source=source,
-        required=1.0,
-        required_source="the required static safety is in T_limit",
-        loads=(f"peak_gear_torque_{side}_n_m",),
-        capacity=_torques_n_m,
-        factor=factor,
-        parts=("sun", "planet", "ring"),
-        cure=f"release the {side}'s torque before its stop, or another {side}_ratio",
-    )
+    ActuatorJoint(name=f"{side}_gear_{tooth}", group="gears", side=side,
+        formula=f"T_limit / T, with the static safety of rating.overload_{tooth}_safety at T_limit", source=source,
+        required=1.0, required_source="the required static safety is in T_limit",
+        loads=(f"peak_gear_torque_{side}_n_m",), capacity=_torques_n_m, factor=factor, parts=("sun", "planet", "ring"),
+        cure=f"release the {side}'s torque before its stop, or another {side}_ratio")
     for side in SIDES
     for tooth, (source, factor) in _TEETH.items()
-)
+)  # fmt: skip
 _ALWAYS = tuple(
-    ActuatorJoint(
-        name=f"{side}_gear_strikes",
-        group="gear_strikes",
-        side=side,
+    ActuatorJoint(name=f"{side}_gear_strikes", group="gear_strikes", side=side,
         formula="T_limit / T, with rating.flank_safety and rating.root_safety under duty and strikes at T_limit",
-        source="ISO 6336-2, -3 and -6, one load cycle per jump; the rules paper know no fatigue",
-        required=1.0,
+        source="ISO 6336-2, -3 and -6, one load cycle per jump; the rules paper know no fatigue", required=1.0,
         required_source="it informs: below 1, the gears last fewer jumps than duty.jumps if each strikes like this one",
-        loads=(f"peak_gear_torque_{side}_n_m",),
-        capacity=_STRIKES,
-        parts=("sun", "planet", "ring"),
-        cure=f"release the {side}'s torque before its stop, or a heavier gearbox",
-    )
+        loads=(f"peak_gear_torque_{side}_n_m",), capacity=_STRIKES, parts=("sun", "planet", "ring"),
+        cure=f"release the {side}'s torque before its stop, or a heavier gearbox")
     for side in SIDES
-)
+)  # fmt: skip
 JOINTS = (*_ONCE, *_ALWAYS)
