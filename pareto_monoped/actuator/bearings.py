@@ -47,9 +47,6 @@ class RatedBearing:
         """Refuse ratings that do not belong to these balls.
 
         C follows from the balls by ISO 281. C0 is f0 Z Dw^2 by ISO 76, with f0 within the range of its table.
-
-        Raises:
-            InputError: a dimension or a rating is impossible.
         """
         quantity, room = f"bearing {self.designation}: ", 0.5 * (self.outer_diameter_mm - self.inner_diameter_mm)
         cure = "correct data/bearings.csv"

@@ -119,11 +119,7 @@ class RollerBearing:
     static_rating_n: float  #: C0
 
     def __post_init__(self) -> None:
-        """Refuse impossible dimensions or ratings.
-
-        Raises:
-            InputError: an inner diameter is not below the outer one, or a number is not positive.
-        """
+        """Refuse an inner diameter that is not below the outer one, and numbers that are not positive."""
         cure = "correct data/needle_bearings.csv"
         if not 0.0 < self.inner_diameter_mm < self.outer_diameter_mm:
             quantity = f"bearing {self.designation}: inner_diameter_mm"

@@ -93,9 +93,6 @@ class _Row:
 
         Newton's method on the elastic energy less the work of the loads, which is convex. Steps are halved until the
         energy falls.
-
-        Raises:
-            SimulationError: no balance was found.
         """
         load = force + moment / self.arm_mm
         press = (_STRIBECK * load / (self.balls * self.stiffness)) ** (2.0 / 3.0)
