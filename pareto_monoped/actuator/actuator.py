@@ -152,7 +152,7 @@ def _with_safeties(part: Part, rating: Rating) -> Part:
 
 
 def reflected_inertia_kg_m2(parts: tuple[Part, ...], gears: GearSet, motor: Motor) -> float:
-    """Inertia at the output of all that moves when the output turns: each moment at the square of its speed."""
+    """Return the inertia at the output of all that moves when it turns: each moment at the square of its speed."""
     # One sum per part: floating-point sums depend on their order, and the results of stored studies on this one.
     return sum(sum(inertia * speed**2 for inertia, speed in terms) for terms in turning_terms(parts, gears, motor))
 

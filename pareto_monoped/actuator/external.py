@@ -106,7 +106,7 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
 
 
 def _dowel_holes(motor: Motor) -> Pattern:
-    """One hole for a dowel between every two screws of the turning face, whose friction alone carries too little."""
+    """Return a dowel hole between every two screws of the turning face, whose friction alone carries too little."""
     output = _output(motor)
     return COUPLING_DOWEL.holes(output.pitch_circle_mm, output.count, np.pi / output.count)
 

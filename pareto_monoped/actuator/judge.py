@@ -74,7 +74,7 @@ def _with_shifts(gears: GearSet, room_mm: float, settings: ActuatorSettings) -> 
 
 
 def interval_tenths(sun_teeth: NDArray[np.int64], ring_teeth: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Lower end of the half-open interval [g, g + 0.1) that the ratio lies in, in tenths; exact, in integers."""
+    """Return the lower end of the half-open interval [g, g + 0.1) of the ratio in tenths; exact, in integers."""
     return 10 * (sun_teeth + ring_teeth) // sun_teeth
 
 
@@ -251,7 +251,7 @@ class _Rating:
         self.rated[rows] = True
 
     def lightest(self, place: int) -> NDArray[np.float64]:
-        """Mass of the solution of an interval that has this place among those rated, by the interval's tenths."""
+        """Return the mass of the rated solution with this place in its interval, by the interval's tenths."""
         solved = self.rated & ~self.screen.broken.any(axis=0)
         return _lightest(self.screen.tenths, np.where(solved, self.mass_kg, np.inf), place)
 

@@ -78,7 +78,7 @@ def needle_rows(width_mm: Numbers, settings: ActuatorSettings) -> NeedleRows:
 
 
 def raceway_factor(hardness_hv: float) -> float:
-    """f_H by which raceways softer than 670 HV carry less; SKF and ISO 281 take 58 HRC, 655 HV, as hard enough."""
+    """Return f_H by which raceways softer than 670 HV carry less; SKF and ISO 281 are content with 58 HRC, 655 HV."""
     return float(np.interp(hardness_hv, *_RACEWAY_FACTORS))
 
 

@@ -152,7 +152,7 @@ class ActuatorMap:
         return np.where(inside, _serving(self)[np.where(inside, index, 0)], -1)
 
     def stand_in(self, ratio: float) -> str:
-        """One line on the gearbox that stands in at a ratio whose interval has none; '' where nothing stands in."""
+        """Return one line on the gearbox that stands in at a ratio whose interval has none, otherwise ''."""
         index = int(self.interval_index([ratio])[0])
         if index < 0 or index == int(_index(np.asarray(ratio, dtype=np.float64))):
             return ""

@@ -311,7 +311,7 @@ steel_part = partial(Part, material=MATERIALS.steel, process="bought")
 
 @lru_cache(maxsize=1024)
 def _remembered(part: Part) -> MassProperties:
-    """The mass properties of a part of plain numbers, computed once: most parts do not depend on a link's length."""
+    """Return the mass properties of a part of plain numbers, computed once: most depend on no link's length."""
     return part._everywhere()
 
 

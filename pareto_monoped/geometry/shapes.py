@@ -297,7 +297,7 @@ def _arc_sectors(
     start: NDArray[np.float64],
     end: NDArray[np.float64],
 ) -> Moments:
-    """What arcs span with the origin: the sector with the arc's centre, and two triangles from there to the origin."""
+    """Return what arcs span with the origin: sectors around their centres, and two triangles from each to it."""
     cos0, sin0, cos1, sin1 = np.cos(start), np.sin(start), np.cos(end), np.sin(end)
     turn, wave = end - start, sin1 * cos1 - sin0 * cos0
     r2, r3, r4 = r * r, r**3, r**4

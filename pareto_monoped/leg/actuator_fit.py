@@ -61,7 +61,7 @@ def peak_current_a(motor: Motor) -> float:
 
 
 def motor_driver_for(motor: Motor) -> MotorDriver:
-    """The lightest driver that carries a motor; the strongest one if none does, which its part's note then says."""
+    """Return the lightest driver that carries a motor, or the strongest one, whose note then says what it lacks."""
     return next((driver for driver in MOTOR_DRIVERS if driver.carries(motor)), MOTOR_DRIVERS[-1])
 
 

@@ -183,7 +183,7 @@ def _unit_masses(
 
 
 def _body_masses(units: dict[str, MassProperties], options: MassOptions) -> list[MassProperties]:
-    """The units of each body together, in the order of ``BODIES``, after the options have replaced what they name."""
+    """Add up the units of each body in the order of ``BODIES``, after the options replaced what they name."""
     masses = dict(units)
     for name, mass_kg in (("base_frame", options.base_structure_mass_kg), ("foot", options.foot_mass_kg)):
         if mass_kg is not None:

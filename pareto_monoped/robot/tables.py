@@ -48,7 +48,7 @@ def rotor_inertia_kg_m2(actuator: Actuator) -> float:
 
 
 def rotor_excess_kg_m2(actuator: Actuator) -> float:
-    """Inertia of the motor's rotor by its data sheet, less that of the envelope that weighs it among the parts."""
+    """Return the inertia of the motor's rotor by its data sheet, less that of the envelope among the parts."""
     drawn = sum(
         float(part.mass_properties().inertia_kg_m2[2, 2]) for part in actuator.parts if part.role is Role.MOTOR_ROTOR
     )

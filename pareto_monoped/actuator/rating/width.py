@@ -116,7 +116,7 @@ def _margin(stage: Stage, steps: NDArray[np.float64], off: Collection[str]) -> N
 
 
 def _shortage(stage: Stage, steps: NDArray[np.float64], off: Collection[str]) -> NDArray[np.float64]:
-    """The load at a width over the one that is carried with the safety factors required; of the worst flank or root."""
+    """Return the load at a width over the one carried with the safety required, of the worst flank or root."""
     found = stage.safeties(steps * stage.settings.parts.rating.face_step_mm)
     least = required(stage.settings)
     shares = [

@@ -115,7 +115,7 @@ def hip_force_n(actuator: Actuator, at: Layout, service: ServiceData) -> float:
 
 
 def uneven_force_n(actuator: Actuator, settings: ActuatorSettings) -> float:
-    """Radial force on the sun at the peak torque: what one planet's teeth press above the mean, (K_gamma - 1) of it."""
+    """Return the sun's radial force at the peak torque: (K_gamma - 1) of one planet's mean tooth force."""
     gears = actuator.gears
     radius_m = 0.5e-3 * float(gears.module_mm) * float(gears.sun_teeth)
     tangential = actuator.motor.peak_torque_n_m / (radius_m * float(gears.planets))

@@ -81,7 +81,7 @@ class _Row:
         self.stiffness = contact_stiffness(bearing)
 
     def forces(self, shift: Floats, tilt: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Force, force's radial and axial share, and distance of the groove centres of each ball, shape (n, balls)."""
+        """Return force, its radial and axial share, and distance of groove centres of each ball, shape (n, balls)."""
         radial = self.radial_mm + shift[:, None] * self.cosine
         axial = self.arm_mm * tilt[:, None] * self.cosine
         distance = np.hypot(radial, axial)
@@ -165,7 +165,7 @@ def contact_stiffness(bearing: RatedBearing) -> float:
 
 
 def _equivalent_n(bearing: RatedBearing, balls: Floats) -> Floats:
-    """Dynamic equivalent load by the rating life of both rings (ISO/TS 16281, clause 4: the inner ring turns)."""
+    """Return the equivalent load by the rating life of both rings (ISO/TS 16281, clause 4: the inner turns)."""
     gamma = bearing.ball_diameter_mm / bearing.pitch_diameter_mm
     # Both grooves have the same radius, so that their ratio in the standard's bracket is 1.
     bracket = (1.044 * ((1.0 - gamma) / (1.0 + gamma)) ** 1.72) ** (10.0 / 3.0)
@@ -300,7 +300,7 @@ def _life_h(turns: Numbers, force_n: Numbers, dynamic_rating_n: Numbers, setting
 
 
 def planet_margin(gears: GearSet, width_mm: Numbers, motor: Motor, settings: ActuatorSettings) -> Numbers:
-    """Least of life, static safeties or pv over what the settings ask for, less 1; negative where one is too little."""
+    """Return the least of life, static safeties or pv over what the settings ask for, less 1."""
     if settings.planet_bearing == "needles":
         force = planet_force_n(gears, gears.ratio * motor.peak_torque_n_m, settings)
         return _needle_margin(planet_turns(gears), force, width_mm, settings)
@@ -331,7 +331,7 @@ def bush_pv_limit(settings: ActuatorSettings) -> float:
 
 
 def planet_width_mm(gears: GearSet, motor: Motor, settings: ActuatorSettings) -> Numbers:
-    """Least face width at which the planets' bearings hold; 0 where none is wide enough, which a rule then says."""
+    """Return the least face width at which the planets' bearings hold; 0 where none does, which a rule says."""
     if "planet_bearing" in settings.constraints_off:
         return np.zeros(np.shape(gears.sun_teeth))[()]
     if settings.planet_bearing == "bushes":
