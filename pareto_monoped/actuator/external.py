@@ -15,13 +15,7 @@ from pareto_monoped.actuator.features import (
     tube,
 )
 from pareto_monoped.actuator.front import carrier_parts, gear_parts
-from pareto_monoped.actuator.layout import (
-    COUPLING_DOWEL,
-    DOWEL_STANDS_OUT_MM,
-    ExternalLayout,
-    Layout,
-    external_layout,
-)
+from pareto_monoped.actuator.layout import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, ExternalLayout, Layout, external_layout
 from pareto_monoped.actuator.motor import HolePattern, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.parts import Part

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from functools import lru_cache, reduce
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.actuator.assumptions import ServiceData, life_turns, output_turns_per_hour
 from pareto_monoped.actuator.bearings import RatedBearing, rated_bearing
@@ -22,9 +21,8 @@ from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.needles import LIFE_EXPONENT, choices_mm, needle_rows, roller_bearing
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.errors import SimulationError, complaint
-from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.geometry.shapes import Floats, Numbers
 
-Floats = NDArray[np.float64]
 GROOVE = 0.52
 """Groove radius over ball diameter, as ISO 281 and ISO 76 assume for deep groove ball bearings."""
 _YOUNGS_MODULUS_MPA, _POISSON_RATIO = 207_000.0, 0.3  # bearing steel, as in ISO/TS 16281 and ISO 76
