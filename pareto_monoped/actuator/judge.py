@@ -217,17 +217,11 @@ class _Screen:
 
 
 class _Rating:
-    """Face width, strength and mass under ``iso6336`` of those gear sets that may matter.
-
-    Attributes:
-        screen: all sets; ``rate`` writes width and broken rules there.
-        mass_kg: infinite for sets that are not rated.
-        rated: which sets are.
-    """
+    """Face width, strength and mass under ``iso6336`` of those gear sets that may matter."""
 
     def __init__(self, screen: "_Screen") -> None:
         self.screen, self.judge = screen, screen.judge
-        self.mass_kg = np.full(len(screen.width_mm), np.inf)
+        self.mass_kg = np.full(len(screen.width_mm), np.inf)  # infinite for sets that are not rated
         self.rated = np.zeros(len(screen.width_mm), dtype=bool)
 
     def rate(self, some: "_Bounded") -> None:
