@@ -25,10 +25,11 @@ from pareto_monoped.jump.evaluate import Evaluations
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.search.registry import make_algorithm
 from pareto_monoped.search.scoring import judge
+from pareto_monoped.storage.address import Server
 from pareto_monoped.storage.columns import Generation
 from pareto_monoped.storage.front_reader import read_front
 from pareto_monoped.storage.meta import StudyMeta
-from pareto_monoped.storage.place import Server, StudyPlace, place_of, storage_of
+from pareto_monoped.storage.place import StudyPlace, place_of, storage_of
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.status import read_summary
 from pareto_monoped.storage.store import Store, create_database

@@ -1,8 +1,10 @@
-"""The house's rule: imports go one way only, and heavy libraries are imported in their own room."""
+"""The house's rules: imports go one way, rooms are entered by their doors, heavy libraries stay in their own room."""
 
 import ast
+import re
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -10,8 +12,11 @@ import pytest
 PACKAGE = Path(__file__).parent.parent / "pareto_monoped"
 # data/ holds what is read or copied, such as the replay of a jump; nothing imports it.
 SOURCES = sorted(path for path in PACKAGE.rglob("*.py") if path.relative_to(PACKAGE).parts[0] != "data")
+# The front door imports from every room, when a name is used; tests/api holds that it imports nothing before.
+INSIDE = [path for path in SOURCES if path != PACKAGE / "__init__.py"]
+ROOMS = [path.parent for path in SOURCES if path.name == "__init__.py" and path.parent.parent == PACKAGE]
 
-# From the top of the house to the ground; a module may import from its own level's room and from lower levels.
+# From the top of the house to the ground; a module may import from its own room and from lower levels.
 LEVELS = [
     {"__main__"},
     {"cli"},
@@ -39,6 +44,12 @@ LEVELS = [
 ]
 # Rooms that may import from another room of their level.
 BESIDE = {("report", "cad"), ("design", "config")}
+INSPECTORS = {("strength", "actuator"), ("strength", "leg")}
+"""The strength check rates the dimensions that parts are drawn with, so it may look at every module of these rooms."""
+MOST_AT_A_DOOR = 16
+"""Modules that a room may show to others: about ten, and as many as the largest room shows today."""
+MOST_MODULES, MOST_IN_A_ROOM, MOST_LINES = 300, 40, 450
+"""Of the package, of a folder, of a module: what one engineer can hold in the head."""
 HEAVY = {
     "mujoco": ["jump"],
     "OCP": ["cad/kernel"],
@@ -47,63 +58,210 @@ HEAVY = {
     "cma": ["search"],
     "plotly": ["report"],
 }
-
 ANYWHERE = {"OCP"}
 """Libraries that no other folder may import even inside a function: the CAD kernel has a process of its own."""
+
+
+@cache
+def parsed(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+def module_of(path: Path) -> str:
+    return ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__")
+
+
+MODULES = {module_of(path) for path in INSIDE}
+
+
+def imported(tree: ast.Module) -> set[str]:
+    """What is imported anywhere, also inside functions and for type checking; modules of the package in full."""
+    found = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            # A name that is imported from a package may be a module itself.
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+            found |= {name if name in MODULES else node.module for name in names}
+        elif isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+    return found
+
+
+def of_package(tree: ast.Module) -> list[str]:
+    return sorted(name for name in imported(tree) if name.startswith("pareto_monoped."))
 
 
 def level(room: str) -> int:
     return next(index for index, rooms in enumerate(LEVELS) if room in rooms)
 
 
+def upwards(here: str, tree: ast.Module) -> list[str]:
+    """Imports of rooms that are not below the room ``here``."""
+    rooms = {name: name.split(".")[1] for name in of_package(tree)}
+    return [
+        name
+        for name, there in rooms.items()
+        if there != here and (here, there) not in BESIDE and level(there) <= level(here)
+    ]
+
+
+@cache
+def door(package: Path) -> list[str]:
+    """Modules and rooms of a package that other rooms may import: its ``__all__``."""
+    for node in parsed(package / "__init__.py").body:
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
+            return list(ast.literal_eval(node.value))
+    return []
+
+
+def past_doors(here: str, tree: ast.Module) -> list[str]:
+    """Imports from other rooms that are not at the door of the room, nor at that of a room inside it."""
+    found = []
+    for name in of_package(tree):
+        package, steps = PACKAGE / name.split(".")[1], name.split(".")[2:]
+        if not package.is_dir() or package.name == here or (here, package.name) in INSPECTORS:
+            continue
+        for step in steps:
+            if step not in door(package):
+                found.append(name)
+                break
+            package /= step
+    return found
+
+
 def room_of(path: Path) -> str:
     return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
 
 
-def imports(path: Path) -> list[tuple[str, bool]]:
-    """Every imported module with whether the import stands at the top of the file."""
-    tree = ast.parse(path.read_text())
+def in_all_modules(rule) -> dict[str, list[str]]:
+    """The modules that break a rule, each with what breaks it."""
+    found = {module_of(path): rule(room_of(path), parsed(path)) for path in INSIDE}
+    return {module: broken for module, broken in found.items() if broken}
+
+
+def test_imports_go_down_only():
+    assert in_all_modules(upwards) == {}
+
+
+def test_rooms_are_entered_by_their_door():
+    assert in_all_modules(past_doors) == {}, "name it in __all__ of its room, or use what is there"
+
+
+def test_doors_are_narrow_and_lead_somewhere():
+    assert {room.name: len(door(room)) for room in ROOMS if len(door(room)) > MOST_AT_A_DOOR} == {}
+    used = {name for path in INSIDE for name in of_package(parsed(path)) if name.split(".")[1] != room_of(path)}
+    for room in ROOMS:
+        prefixes = {f"pareto_monoped.{room.name}.{name}" for name in door(room)}
+        assert {one for one in prefixes if not any(f"{name}.".startswith(f"{one}.") for name in used)} == set()
+
+
+@pytest.mark.parametrize(
+    ("here", "line", "rule", "broken"),
+    [
+        ("leg", "from pareto_monoped.cad.export import export_design", upwards, ["pareto_monoped.cad.export"]),
+        ("leg", "from pareto_monoped.geometry import parts", upwards, []),
+        ("cli", "from pareto_monoped.leg.knee import knee_parts", past_doors, ["pareto_monoped.leg.knee"]),
+        (
+            "cli",
+            "from pareto_monoped.actuator.rating.stage import x",
+            past_doors,
+            ["pareto_monoped.actuator.rating.stage"],
+        ),
+        ("cli", "def f():\n    from pareto_monoped.leg import chain", past_doors, ["pareto_monoped.leg.chain"]),
+        ("strength", "from pareto_monoped.leg.knee import knee_parts", past_doors, []),
+        ("cli", "from pareto_monoped.leg.dimensions import leg_dimensions", past_doors, []),
+    ],
+)
+def test_an_import_that_breaks_a_rule_is_found(here, line, rule, broken):
+    assert rule(here, ast.parse(line)) == broken
+
+
+def order_of(room: Path) -> list[list[str]]:
+    """The modules of a room as its docstring orders them, lowest first; those of one group do not need each other."""
+    words = re.search(
+        r"Order of imports, lowest first: (.+?)\.\s*(\n\n|$)",
+        ast.get_docstring(parsed(room / "__init__.py")) or "",
+        re.S,
+    )
+    return (
+        [[name.strip() for name in group.split(",")] for group in " ".join(words[1].split()).split(";")]
+        if words
+        else []
+    )
+
+
+def out_of_order(order: list[list[str]], imports: dict[str, set[str]]) -> list[str]:
+    """Imports that do not go to an earlier group, and modules that the order does not name once."""
+    place = {name: k for k, group in enumerate(order) for name in group}
+    named = sorted(name for group in order for name in group)
+    wrong = [f"order: {name}" for name in sorted(set(named) ^ set(imports))] + [
+        f"twice: {name}" for name in named if named.count(name) > 1
+    ]
+    return wrong or [
+        f"{module} -> {other}"
+        for module, others in imports.items()
+        for other in others
+        if place[other] >= place[module]
+    ]
+
+
+@pytest.mark.parametrize("room", ROOMS, ids=lambda room: room.name)
+def test_imports_inside_a_room_keep_its_order(room):
+    start = f"pareto_monoped.{room.name}."
+    modules = {module_of(path): path for path in room.rglob("*.py") if path.name != "__init__.py"}
+    imports = {
+        name.removeprefix(start): {other.removeprefix(start) for other in of_package(parsed(path)) if other in modules}
+        for name, path in modules.items()
+    }
+    assert out_of_order(order_of(room), imports) == []
+
+
+def test_a_break_of_the_order_is_found():
+    order = [["a", "b"], ["c"]]
+    assert out_of_order(order, {"a": set(), "b": set(), "c": {"a"}}) == []
+    assert out_of_order(order, {"a": {"b"}, "b": set(), "c": set()}) == ["a -> b"]
+    assert out_of_order(order, {"a": set(), "b": {"c"}, "c": {"a"}}) == ["b -> c"]
+    assert out_of_order(order, {"a": set(), "b": set(), "c": set(), "d": set()}) == ["order: d"]
+
+
+def test_the_house_stays_small():
+    assert len(SOURCES) <= MOST_MODULES
+    folders = {path.parent for path in SOURCES}
+    assert [folder.name for folder in folders if len(list(folder.glob("*.py"))) > MOST_IN_A_ROOM] == []
+    assert [path.name for path in SOURCES if len(path.read_text().splitlines()) > MOST_LINES] == []
+
+
+def heavy_outside(path: Path, tree: ast.Module) -> list[str]:
+    """Heavy libraries that a module imports although they belong to another room.
+
+    Other rooms may need a version number or a model file, and import the library inside a function.
+    """
     found = []
     for node in ast.walk(tree):
-        names = []
-        if isinstance(node, ast.ImportFrom) and node.module:
-            names = [node.module]
-            if node.module == "pareto_monoped":
-                names = [f"pareto_monoped.{alias.name}" for alias in node.names]
-        elif isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
-        found += [(name, node in tree.body) for name in names]
+        names = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+        names += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        for library in {name.split(".")[0] for name in names} & set(HEAVY):
+            at_home = any(path.is_relative_to(PACKAGE / home) for home in HEAVY[library])
+            if not at_home and (node in tree.body or library in ANYWHERE):
+                found.append(library)
     return found
 
 
-# The front door imports from every room, when a name is used; tests/api holds that it imports nothing before.
-INSIDE = [path for path in SOURCES if path != PACKAGE / "__init__.py"]
+def test_heavy_libraries_stay_in_their_room():
+    found = {module_of(path): heavy_outside(path, parsed(path)) for path in SOURCES}
+    assert {module: libraries for module, libraries in found.items() if libraries} == {}
 
 
-@pytest.mark.parametrize("path", INSIDE, ids=lambda p: str(p.relative_to(PACKAGE)))
-def test_imports_go_down_only(path):
-    here = room_of(path)
-    for name, _ in imports(path):
-        parts = name.split(".")
-        if parts[0] != "pareto_monoped" or len(parts) == 1:
-            continue
-        there = parts[1]
-        if there in (here, "__version__"):
-            continue
-        down = level(there) > level(here) or (here, there) in BESIDE
-        assert down, f"{here} imports {name}, which is not below it"
-
-
-@pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(PACKAGE)))
-def test_heavy_libraries_stay_in_their_room(path):
-    for name, at_top in imports(path):
-        library = name.split(".")[0]
-        homes = HEAVY.get(library)
-        if homes is None:
-            continue
-        # Other rooms may need a version number or a model file, and import the library inside a function.
-        at_home = any(path.is_relative_to(PACKAGE / home) for home in homes)
-        assert at_home or not (at_top or library in ANYWHERE), f"{library} belongs into {' or '.join(homes)}"
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        ("import mujoco", ["mujoco"]),
+        ("def f():\n    import mujoco", []),
+        ("def f():\n    from OCP.gp import gp_Pnt", ["OCP"]),
+    ],
+)
+def test_a_heavy_library_in_another_room_is_found(line, found):
+    assert heavy_outside(PACKAGE / "leg" / "knee.py", ast.parse(line)) == found
 
 
 SLOW = sorted([*HEAVY, "pandas", "numba", "matplotlib", "scipy", "rich", "pydantic", "sqlalchemy", "trimesh"])
@@ -138,23 +296,6 @@ def test_an_export_of_a_case_imports_no_tables():
     assert run.stdout.strip() == "False", run.stderr
 
 
-def module_of(path: Path) -> str:
-    return ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__")
-
-
-def imported_modules(path: Path, modules: set[str]) -> set[str]:
-    """Modules of the package that a module imports anywhere, inside functions and for type checking too."""
-    found = set()
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.ImportFrom) and node.module:
-            # A name that is imported from a package may be a module itself.
-            names = [f"{node.module}.{alias.name}" for alias in node.names]
-            found |= {name if name in modules else node.module for name in names}
-        elif isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-    return (found & modules) - {"pareto_monoped"}
-
-
 def circles(graph: dict[str, set[str]]) -> set[frozenset[str]]:
     """Groups of modules that reach each other."""
     reach = {module: set(targets) for module, targets in graph.items()}
@@ -170,8 +311,7 @@ def circles(graph: dict[str, set[str]]) -> set[frozenset[str]]:
 
 
 def test_no_modules_import_each_other_in_a_circle():
-    modules = {module_of(path) for path in INSIDE}
-    graph = {module_of(path): imported_modules(path, modules) for path in INSIDE}
+    graph = {module_of(path): set(of_package(parsed(path))) & MODULES for path in INSIDE}
     assert circles(graph) == set()
 
 
@@ -209,9 +349,9 @@ def decisions_by_part_name(tree: ast.AST) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(PACKAGE)))
-def test_nothing_is_decided_by_the_name_of_a_part(path):
-    assert decisions_by_part_name(ast.parse(path.read_text())) == []
+def test_nothing_is_decided_by_the_name_of_a_part():
+    found = {module_of(path): decisions_by_part_name(parsed(path)) for path in SOURCES}
+    assert {module: decisions for module, decisions in found.items() if decisions} == {}
 
 
 @pytest.mark.parametrize(

@@ -152,7 +152,7 @@ def _with_safeties(part: Part, rating: Rating) -> Part:
 
 
 def reflected_inertia_kg_m2(parts: tuple[Part, ...], gears: GearSet, motor: Motor) -> float:
-    """Inertia at the output of all that moves when the output turns: each moment at the square of its speed."""
+    """Return the inertia at the output of all that moves when it turns: each moment at the square of its speed."""
     # One sum per part: floating-point sums depend on their order, and the results of stored studies on this one.
     return sum(sum(inertia * speed**2 for inertia, speed in terms) for terms in turning_terms(parts, gears, motor))
 
@@ -182,20 +182,13 @@ def turning_terms(parts: tuple[Part, ...], gears: GearSet, motor: Motor) -> Iter
 
 def output_interface(settings: ActuatorSettings) -> OutputInterface:
     """Return the output flange's patterns of bolts and dowels."""
-    data = settings.parts
+    carrier, data = settings.parts.carrier, settings.parts.interface
+    circle, count = data.output_bolt_circle_mm, data.output_bolt_count
     return OutputInterface(
-        flange_radius_mm=data.carrier.flange_radius_mm,
-        bolts=HolePattern(
-            pitch_circle_mm=data.interface.output_bolt_circle_mm,
-            diameter_mm=2.0 * M3.shank,
-            count=data.interface.output_bolt_count,
-        ),
-        dowels=HolePattern(
-            pitch_circle_mm=data.interface.output_bolt_circle_mm,
-            diameter_mm=data.interface.output_dowel_mm,
-            count=data.interface.output_bolt_count // 2,
-        ),
-        thread_depth_mm=data.carrier.thread_depth_mm,
+        flange_radius_mm=carrier.flange_radius_mm,
+        bolts=HolePattern(pitch_circle_mm=circle, diameter_mm=2.0 * M3.shank, count=count),
+        dowels=HolePattern(pitch_circle_mm=circle, diameter_mm=data.output_dowel_mm, count=count // 2),
+        thread_depth_mm=carrier.thread_depth_mm,
     )
 
 
@@ -204,20 +197,13 @@ def mount_interface(motor: Motor, family: Family, settings: ActuatorSettings) ->
     body = motor.frameless if family == "ISSPG" else motor.framed
     assert body is not None
     assert motor.mount_holes is not None
-    casing = settings.parts.casing
+    casing, data = settings.parts.casing, settings.parts.interface
     radius = 0.5 * body.outer_diameter_mm
+    circle, count = 2.0 * (radius + casing.bolt_offset_mm), data.mount_bolt_count
     return MountInterface(
         housing_radius_mm=radius + casing.flange_width_mm,
-        bolts=HolePattern(
-            pitch_circle_mm=2.0 * (radius + casing.bolt_offset_mm),
-            diameter_mm=2.0 * M3.shank,
-            count=settings.parts.interface.mount_bolt_count,
-        ),
-        dowels=HolePattern(
-            pitch_circle_mm=2.0 * (radius + casing.bolt_offset_mm),
-            diameter_mm=settings.parts.interface.mount_dowel_mm,
-            count=settings.parts.interface.mount_bolt_count,
-        ),
+        bolts=HolePattern(pitch_circle_mm=circle, diameter_mm=2.0 * M3.shank, count=count),
+        dowels=HolePattern(pitch_circle_mm=circle, diameter_mm=data.mount_dowel_mm, count=count),
         thread_depth_mm=casing.rim_mm,
         back_bolts=motor.mount_holes,
         back_depth_mm=BACK_THREAD_MM if family == "ISSPG" else casing.plate_mm,

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.errors import InputError, complaint
-from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.geometry.shapes import Floats, Numbers
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,9 +47,6 @@ class RatedBearing:
         """Refuse ratings that do not belong to these balls.
 
         C follows from the balls by ISO 281. C0 is f0 Z Dw^2 by ISO 76, with f0 within the range of its table.
-
-        Raises:
-            InputError: a dimension or a rating is impossible.
         """
         quantity, room = f"bearing {self.designation}: ", 0.5 * (self.outer_diameter_mm - self.inner_diameter_mm)
         cure = "correct data/bearings.csv"
@@ -148,7 +145,7 @@ def rated_bearing(inner_diameter_mm: float) -> RatedBearing:
 
 
 @lru_cache(maxsize=1)
-def catalogue() -> NDArray[np.float64]:
+def catalogue() -> Floats:
     """Return the shipped catalogue, shape (k, 4): bore, outer diameter, width in mm, mass in kg; bores increase."""
     table = np.array([[getattr(bearing, name) for name in _DIMENSIONS] for bearing in rated_bearings()])
     table.flags.writeable = False
@@ -164,7 +161,7 @@ def small_bearing(inner_diameter_mm: float) -> Bearing:
 
 
 @lru_cache(maxsize=1)
-def _regression() -> NDArray[np.float64]:
+def _regression() -> Floats:
     """Return the least-squares quadratic of catalogue mass over bore, of bores from 10 mm (the authors' table)."""
     table = catalogue()[catalogue()[:, 0] >= 10.0]
     return np.polyfit(table[:, 0], table[:, 3], 2)
@@ -240,7 +237,7 @@ class RetainingRing:
 _NUMBERS = ("size_mm", "thickness_mm", "radial_width_mm", "groove_diameter_mm", "groove_width_mm", "mass_kg")
 
 
-def read_retaining_rings(text: str) -> dict[str, tuple[NDArray[np.float64], tuple[str, ...]]]:
+def read_retaining_rings(text: str) -> dict[str, tuple[Floats, tuple[str, ...]]]:
     """Return the rings of a table in CSV with ``#`` comments: by standard, numbers of shape (n, 6) and zones of the
     grooves.
 
@@ -271,7 +268,7 @@ def _refuse(quantity: str, value: float, allowed: str) -> None:
 
 
 @lru_cache(maxsize=1)
-def _catalogue() -> dict[str, tuple[NDArray[np.float64], tuple[str, ...]]]:
+def _catalogue() -> dict[str, tuple[Floats, tuple[str, ...]]]:
     path = resources.files("pareto_monoped") / "data" / "retaining_rings.csv"
     return read_retaining_rings(path.read_text(encoding="utf-8"))
 

@@ -15,13 +15,7 @@ from pareto_monoped.actuator.features import (
     tube,
 )
 from pareto_monoped.actuator.front import carrier_parts, gear_parts
-from pareto_monoped.actuator.layout import (
-    COUPLING_DOWEL,
-    DOWEL_STANDS_OUT_MM,
-    ExternalLayout,
-    Layout,
-    external_layout,
-)
+from pareto_monoped.actuator.layout import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, ExternalLayout, Layout, external_layout
 from pareto_monoped.actuator.motor import HolePattern, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.parts import Part
@@ -106,7 +100,7 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
 
 
 def _dowel_holes(motor: Motor) -> Pattern:
-    """One hole for a dowel between every two screws of the turning face, whose friction alone carries too little."""
+    """Return a dowel hole between every two screws of the turning face, whose friction alone carries too little."""
     output = _output(motor)
     return COUPLING_DOWEL.holes(output.pitch_circle_mm, output.count, np.pi / output.count)
 

@@ -299,7 +299,7 @@ SPLINE_CLASS = 8
 def rated_teeth(
     gear: ExternalGear | InternalGear, steel: GearGrade, settings: ActuatorSettings, *mates: ExternalGear | InternalGear
 ) -> ToothMaking | None:
-    """How a rated gear is made, and its mates; None under the rules of the paper, which rate none, and for arrays."""
+    """Return how a rated gear is made, and its mates; None under the rules of the paper, and for arrays."""
     if settings.rules == "paper" or np.ndim(gear.teeth):
         return None
     data, module = settings.parts.rating, float(gear.module_mm)

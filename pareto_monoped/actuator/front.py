@@ -152,7 +152,7 @@ def _ring(at: Layout, settings: ActuatorSettings) -> Part:
 
 
 def planet_fits(settings: ActuatorSettings) -> tuple[Fit, ...]:
-    """Tolerance of the planets' bores: with needles, a raceway that leaves them 1 to 24 um on a pin of m6."""
+    """Return the tolerance of the planets' bores; needles have 1 to 24 um between a raceway and a pin of m6."""
     needles = settings.planet_bearing == "needles"
     return (
         Fit(diameter_mm=settings.planet_bore_mm, zone=_RACEWAY_ZONE if needles else "H7", seat=True, raceway=needles),

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.gears import DEDENDUM, PRESSURE_ANGLE_RAD, ExternalGear, InternalGear, involute
-from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.geometry.shapes import Floats, Numbers
 
 
 class _Shifts(NamedTuple):
@@ -148,7 +148,7 @@ class GearSet:
         shifts = {name: self._spread(getattr(self, name))[mask] if self.is_shifted else 0.0 for name in _SHIFTS}
         return GearSet(**teeth, **shifts)
 
-    def _spread(self, value: Numbers) -> NDArray[np.float64]:
+    def _spread(self, value: Numbers) -> Floats:
         """Return a shift as an array of the sets' shape."""
         return np.broadcast_to(np.asarray(value, dtype=np.float64), np.shape(self.sun_teeth))
 

@@ -29,7 +29,7 @@ from pareto_monoped.actuator.rating.width import (
 from pareto_monoped.actuator.ratiomap import RATIO_HIGH, RATIO_LOW
 from pareto_monoped.actuator.rules import CONSTRAINTS, CandidateSets, active_rules, violations
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.geometry.shapes import Floats, Numbers
 
 _BEYOND_MM = 12.0
 """How far beyond the room candidates are enumerated, so that the rules can say why a gearbox is missing."""
@@ -74,7 +74,7 @@ def _with_shifts(gears: GearSet, room_mm: float, settings: ActuatorSettings) -> 
 
 
 def interval_tenths(sun_teeth: NDArray[np.int64], ring_teeth: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Lower end of the half-open interval [g, g + 0.1) that the ratio lies in, in tenths; exact, in integers."""
+    """Return the lower end of the half-open interval [g, g + 0.1) of the ratio in tenths; exact, in integers."""
     return 10 * (sun_teeth + ring_teeth) // sun_teeth
 
 
@@ -88,8 +88,8 @@ class Judged:
 
     gears: GearSet  #: the gear sets
     tenths: NDArray[np.int64]  #: lower end of each set's interval
-    width_mm: NDArray[np.float64]  #: face width
-    mass_kg: NDArray[np.float64]  #: infinite for sets that cannot be built, or need not be weighed
+    width_mm: Floats  #: face width
+    mass_kg: Floats  #: infinite for sets that cannot be built, or need not be weighed
     names: tuple[ConstraintName, ...]  #: of the rules
     broken: NDArray[np.bool_]  #: which of them each set breaks, shape (names, n)
     #: Sets that are solutions or are kept out by a single rule, as far as these may be lighter than the two lightest of
@@ -97,13 +97,13 @@ class Judged:
     considered: NDArray[np.bool_]
 
     @property
-    def nearness(self) -> NDArray[np.float64]:
+    def nearness(self) -> Floats:
         """How far each set is from a solution: rules broken, or 0.5 where a weaker motor would keep all.
 
         A set that fits and is too weak is nearest: steel and safety can be chosen, whole numbers cannot.
         """
         weak, count = np.isin(self.names, list(LOAD_RULES)), self.broken.sum(axis=0)
-        missing: NDArray[np.float64] = np.where(self.broken[~weak].any(axis=0), count, np.minimum(count, 0.5))
+        missing: Floats = np.where(self.broken[~weak].any(axis=0), count, np.minimum(count, 0.5))
         return missing
 
 
@@ -144,22 +144,18 @@ class Judge:
         rating.rate_kept_out(np.flatnonzero(count == 1), screen.tenths[fitting])
         return screen.judged(rating.mass_kg, rating.rated)
 
-    def layout(self, gears: GearSet, width_mm: NDArray[np.float64]) -> Layout:
+    def layout(self, gears: GearSet, width_mm: Floats) -> Layout:
         """Return what lies around gear sets of these widths."""
         return layout(self.motor, self.family, gears, width_mm, self.settings)
 
-    def mass_kg(self, gears: GearSet, width_mm: NDArray[np.float64]) -> NDArray[np.float64]:
+    def mass_kg(self, gears: GearSet, width_mm: Floats) -> Floats:
         """Return the mass of the actuators; infinite where the catalogue has no main bearing."""
         at = self.layout(gears, width_mm)
         mass = np.asarray(actuator_mass_kg(at, self.motor, self.family, self.settings))
         return np.where(np.isnan(mass), np.inf, mass)
 
     def sets(
-        self,
-        gears: GearSet,
-        width_mm: NDArray[np.float64],
-        at: Layout | None,
-        strength: Mapping[str, Numbers] | None = None,
+        self, gears: GearSet, width_mm: Floats, at: Layout | None, strength: Mapping[str, Numbers] | None = None
     ) -> CandidateSets:
         """Return the gear sets as the rules look at them."""
         return CandidateSets(
@@ -180,7 +176,7 @@ class _Screen:
     leaves out the rules that need a layout, until ``judged`` asks which sets are nearest.
     """
 
-    def __init__(self, judge: Judge, gears: GearSet, width_mm: NDArray[np.float64]) -> None:
+    def __init__(self, judge: Judge, gears: GearSet, width_mm: Floats) -> None:
         self.judge, self.gears, self.width_mm = judge, gears, width_mm
         self.tenths = interval_tenths(np.asarray(gears.sun_teeth, np.int64), np.asarray(gears.ring_teeth, np.int64))
         self.names = active_rules(judge.settings)
@@ -201,7 +197,7 @@ class _Screen:
         broken = violations(self.judge.sets(gears, width, self.judge.layout(gears, width)), late)[1]
         self.broken[np.ix_(np.flatnonzero(self.late), rows)] = broken
 
-    def judged(self, mass_kg: NDArray[np.float64], considered: NDArray[np.bool_]) -> Judged:
+    def judged(self, mass_kg: Floats, considered: NDArray[np.bool_]) -> Judged:
         """Return the verdict, complete wherever an interval has no solution and its nearest sets name the rules."""
         found = Judged(
             gears=self.gears,
@@ -221,17 +217,11 @@ class _Screen:
 
 
 class _Rating:
-    """Face width, strength and mass under ``iso6336`` of those gear sets that may matter.
-
-    Attributes:
-        screen: all sets; ``rate`` writes width and broken rules there.
-        mass_kg: infinite for sets that are not rated.
-        rated: which sets are.
-    """
+    """Face width, strength and mass under ``iso6336`` of those gear sets that may matter."""
 
     def __init__(self, screen: "_Screen") -> None:
         self.screen, self.judge = screen, screen.judge
-        self.mass_kg = np.full(len(screen.width_mm), np.inf)
+        self.mass_kg = np.full(len(screen.width_mm), np.inf)  # infinite for sets that are not rated
         self.rated = np.zeros(len(screen.width_mm), dtype=bool)
 
     def rate(self, some: "_Bounded") -> None:
@@ -250,8 +240,8 @@ class _Rating:
         self.mass_kg[rows] = judge.mass_kg(stage.gears, width)
         self.rated[rows] = True
 
-    def lightest(self, place: int) -> NDArray[np.float64]:
-        """Mass of the solution of an interval that has this place among those rated, by the interval's tenths."""
+    def lightest(self, place: int) -> Floats:
+        """Return the mass of the rated solution with this place in its interval, by the interval's tenths."""
         solved = self.rated & ~self.screen.broken.any(axis=0)
         return _lightest(self.screen.tenths, np.where(solved, self.mass_kg, np.inf), place)
 
@@ -303,12 +293,12 @@ class _Bounded:
         """Return some of the sets."""
         return _Bounded(rows=self.rows[mask], stage=self.stage.rows(mask), bounds=self.bounds.where(mask))
 
-    def least_mass_kg(self, judge: Judge) -> NDArray[np.float64]:
+    def least_mass_kg(self, judge: Judge) -> Floats:
         """Return the masses that the sets do not go below."""
         return judge.mass_kg(self.stage.gears, self.bounds.floor_mm)
 
 
-def _rank(groups: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.intp]:
+def _rank(groups: NDArray[np.int64], values: Floats) -> NDArray[np.intp]:
     """Return the place of each value among those of its group, from 0."""
     order = np.lexsort((values, groups))
     first = np.searchsorted(groups[order], groups[order])
@@ -317,7 +307,7 @@ def _rank(groups: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.
     return rank
 
 
-def _lightest(tenths: NDArray[np.int64], mass_kg: NDArray[np.float64], place: int) -> NDArray[np.float64]:
+def _lightest(tenths: NDArray[np.int64], mass_kg: Floats, place: int) -> Floats:
     """Return the lightest mass of each interval by its tenths, or the next by ``place``; infinite where none is."""
     found = np.full(10 * RATIO_HIGH, np.inf)
     known = np.flatnonzero(np.isfinite(mass_kg))

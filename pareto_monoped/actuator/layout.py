@@ -281,7 +281,7 @@ def external_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> Ext
 
 
 def _coupling_mm(motor: Motor, settings: ActuatorSettings) -> float:
-    """Thickness of the coupling, in which the heads of its countersunk screws must find room, in steps of 0.1 mm."""
+    """Return the coupling's thickness, with room for the heads of its countersunk screws, in steps of 0.1 mm."""
     assert motor.output_holes is not None
     screw = screw_for(motor.output_holes.diameter_mm, 0.0)
     return max(

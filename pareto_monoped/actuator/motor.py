@@ -233,7 +233,7 @@ class Motor(Strict):
         )
 
     def estimated_rotor_mass_share(self) -> float:
-        """Estimated share of the rotor in the motor's active mass, from the cross-sections of rotor ring and stator."""
+        """Return the rotor's share in the active mass, estimated from the cross-sections of rotor ring and stator."""
         return mass_share(self, _ROTOR_KG_PER_M3, _STATOR_KG_PER_M3)
 
     def estimated_rotor_inertia_kg_m2(self) -> float:

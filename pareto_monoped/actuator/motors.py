@@ -12,14 +12,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from pareto_monoped.actuator.motor import (
-    MOUNT_BORE_MM,
-    OUTPUT_BORE_MM,
-    FramedMotor,
-    HolePattern,
-    Motor,
-    mass_share,
-)
+from pareto_monoped.actuator.motor import MOUNT_BORE_MM, OUTPUT_BORE_MM, FramedMotor, HolePattern, Motor, mass_share
 from pareto_monoped.actuator.windings import PER_PHASE_AMPLITUDE, PER_PHASE_RMS, torque_constant_n_m_per_a
 from pareto_monoped.config import checked, read_shipped, read_toml
 from pareto_monoped.errors import InputError, MotorError, unknown_name

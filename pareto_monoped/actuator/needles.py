@@ -78,7 +78,7 @@ def needle_rows(width_mm: Numbers, settings: ActuatorSettings) -> NeedleRows:
 
 
 def raceway_factor(hardness_hv: float) -> float:
-    """f_H by which raceways softer than 670 HV carry less; SKF and ISO 281 take 58 HRC, 655 HV, as hard enough."""
+    """Return f_H by which raceways softer than 670 HV carry less; SKF and ISO 281 are content with 58 HRC, 655 HV."""
     return float(np.interp(hardness_hv, *_RACEWAY_FACTORS))
 
 
@@ -119,11 +119,7 @@ class RollerBearing:
     static_rating_n: float  #: C0
 
     def __post_init__(self) -> None:
-        """Refuse impossible dimensions or ratings.
-
-        Raises:
-            InputError: an inner diameter is not below the outer one, or a number is not positive.
-        """
+        """Refuse an inner diameter that is not below the outer one, and numbers that are not positive."""
         cure = "correct data/needle_bearings.csv"
         if not 0.0 < self.inner_diameter_mm < self.outer_diameter_mm:
             quantity = f"bearing {self.designation}: inner_diameter_mm"

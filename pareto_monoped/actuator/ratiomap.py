@@ -19,6 +19,7 @@ from pareto_monoped.actuator.rating.width import LOAD_RULES
 from pareto_monoped.actuator.rules import CONSTRAINTS
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.errors import DesignError, MotorError
+from pareto_monoped.geometry.shapes import Floats
 
 RATIO_LOW = 4
 RATIO_HIGH = 15
@@ -152,7 +153,7 @@ class ActuatorMap:
         return np.where(inside, _serving(self)[np.where(inside, index, 0)], -1)
 
     def stand_in(self, ratio: float) -> str:
-        """One line on the gearbox that stands in at a ratio whose interval has none; '' where nothing stands in."""
+        """Return one line on the gearbox that stands in at a ratio whose interval has none, otherwise ''."""
         index = int(self.interval_index([ratio])[0])
         if index < 0 or index == int(_index(np.asarray(ratio, dtype=np.float64))):
             return ""
@@ -180,7 +181,7 @@ class ActuatorMap:
         assert actuator is not None
         return actuator
 
-    def masses_kg(self, family: Family | None = None) -> NDArray[np.float64]:
+    def masses_kg(self, family: Family | None = None) -> Floats:
         """Return the least mass in every interval, of one family or both, shape (intervals,); NaN without gearbox."""
         masses = np.full(len(self.entries), np.nan)
         for index, entry in enumerate(self.entries):
@@ -189,7 +190,7 @@ class ActuatorMap:
         return masses
 
     @property
-    def ratios_low(self) -> NDArray[np.float64]:
+    def ratios_low(self) -> Floats:
         """Lower ends of the intervals, shape (intervals,)."""
         return np.array([entry.ratio_low for entry in self.entries])
 
@@ -246,12 +247,12 @@ def either(choices: Sequence[str]) -> str:
     return " or ".join(filter(None, (", ".join(choices[:-1]), choices[-1])))
 
 
-def _index(ratios: NDArray[np.float64]) -> NDArray[np.intp]:
+def _index(ratios: Floats) -> NDArray[np.intp]:
     """Return the index of the interval that each ratio lies in; beyond the entries, or negative, outside the map."""
     return _tenths(np.where(np.isfinite(ratios), ratios, -1.0)) - 10 * RATIO_LOW
 
 
-def _tenths(ratios: NDArray[np.float64]) -> NDArray[np.intp]:
+def _tenths(ratios: Floats) -> NDArray[np.intp]:
     """Return the lower end of each ratio's interval, in tenths.
 
     A ratio within 5e-10 below an interval's end counts to the next interval. Ratios far outside the map become

@@ -69,7 +69,7 @@ def _no_interference(sets: CandidateSets) -> Numbers:
 
 
 def _teeth_min(sets: CandidateSets) -> Numbers:
-    """Teeth beyond those that undercutting asks for: a profile shift of x makes up for 2 x / sin(alpha)^2 of them."""
+    """Return the teeth beyond those against undercutting: a shift of x makes up for 2 x / sin(alpha)^2 of them."""
     gears, per_shift = sets.gears, 2.0 / np.square(np.sin(PRESSURE_ANGLE_RAD))
     sun = gears.sun_teeth + per_shift * gears.sun_shift
     spare_teeth: Numbers = (
@@ -99,7 +99,7 @@ def _root_fillet(sets: CandidateSets) -> Numbers:
 
 
 def _of_shifted(gears: GearSet, margin: Callable[[GearSet], Numbers]) -> Numbers:
-    """A margin of shifted sets; without a shift, all teeth keep the rule, which saves the search much of its time."""
+    """Return a margin of shifted sets; teeth without a shift keep the rule, which saves much of the search's time."""
     if not gears.is_shifted:
         return np.zeros(np.shape(gears.sun_teeth))
     if not np.ndim(gears.sun_teeth):

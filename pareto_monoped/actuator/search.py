@@ -75,7 +75,7 @@ def build_map(motor: Motor, settings: ActuatorSettings | None = None) -> Actuato
 
 
 def _built(motor: Motor, winners: Mapping[int, Candidate], settings: ActuatorSettings) -> dict[int, Actuator]:
-    """The actuators of the winners. A width after Lewis may differ in its last bit between one gear set and many."""
+    """Build the actuators of the winners. Lewis' width may differ in its last bit between one gear set and many."""
     if settings.rules == "paper":
         return {low: build_actuator(motor, won.family, won.gears, settings) for low, won in winners.items()}
     built = {}

@@ -27,7 +27,8 @@ from pareto_monoped.pareto.selectors import (
     Trial,
     Weights,
 )
-from pareto_monoped.storage.place import StudyPlace, is_address, place_of
+from pareto_monoped.storage.address import is_address
+from pareto_monoped.storage.place import StudyPlace, place_of
 
 if TYPE_CHECKING:
     from pandas import DataFrame, Series

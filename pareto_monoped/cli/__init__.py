@@ -2,6 +2,9 @@
 
 Numbers go to stdout, messages and progress to stderr. Bad input ends with one line and exit code 2, a failure while
 running with 1, an interrupt with 130.
+
+Order of imports, lowest first: actuator_sheets, terminal; options, process, watching; actuators, campaign, jumps,
+pareto, selection, stored, studies; exports, fronts, robustness.
 """
 
 import difflib

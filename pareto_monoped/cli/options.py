@@ -21,7 +21,8 @@ import click
 from pareto_monoped.cli.terminal import echo
 from pareto_monoped.design import PAPER_MOTOR
 from pareto_monoped.errors import DatabaseError, InputError, complaint
-from pareto_monoped.storage.place import is_address, place_of
+from pareto_monoped.storage.address import is_address
+from pareto_monoped.storage.place import place_of
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from pareto_monoped.geometry.features import Bevel, Feature
 from pareto_monoped.geometry.making import Fit, ToothMaking
 from pareto_monoped.geometry.roles import Group, Joint, Role, Visibility
-from pareto_monoped.geometry.shapes import Circle, Moments, Numbers, Shape
+from pareto_monoped.geometry.shapes import Circle, Floats, Moments, Numbers, Shape
 from pareto_monoped.geometry.tightening import Fastening
 from pareto_monoped.materials import ALLOYS, MATERIALS, Alloy, GearGrade, Material
 
@@ -114,9 +114,9 @@ class Ball:
 class MassProperties:
     """Mass and its first and second moments about the frame's origin; the sum over parts is that of the whole."""
 
-    mass_kg: NDArray[np.float64]  #: shape (...)
-    first_kg_m: NDArray[np.float64]  #: integral of r dm, shape (..., 3)
-    second_kg_m2: NDArray[np.float64]  #: integral of r r^T dm, shape (..., 3, 3)
+    mass_kg: Floats  #: shape (...)
+    first_kg_m: Floats  #: integral of r dm, shape (..., 3)
+    second_kg_m2: Floats  #: integral of r r^T dm, shape (..., 3, 3)
 
     @classmethod
     def zero(cls) -> "MassProperties":
@@ -145,9 +145,7 @@ class MassProperties:
             second_kg_m2=self.second_kg_m2 * scale[..., None, None],
         )
 
-    def placed(
-        self, rotation: NDArray[np.float64] | None = None, translation_m: NDArray[np.float64] | None = None
-    ) -> "MassProperties":
+    def placed(self, rotation: Floats | None = None, translation_m: Floats | None = None) -> "MassProperties":
         """Return the same body rotated (matrix, shape (3, 3)), then moved by ``translation_m``, shape (..., 3)."""
         first, second = self.first_kg_m, self.second_kg_m2
         if rotation is not None:
@@ -156,7 +154,7 @@ class MassProperties:
         turned = MassProperties(mass_kg=self.mass_kg, first_kg_m=first, second_kg_m2=second)
         return turned if translation_m is None else turned.repeated([np.asarray(translation_m, dtype=np.float64)])
 
-    def repeated(self, places_m: Sequence[NDArray[np.float64]]) -> "MassProperties":
+    def repeated(self, places_m: Sequence[Floats]) -> "MassProperties":
         """Return the same body at several places, each a translation of shape (..., 3)."""
         mass, moved = self.mass_kg, reduce(np.add, places_m)
         squares = reduce(np.add, [place[..., :, None] * place[..., None, :] for place in places_m])
@@ -172,28 +170,28 @@ class MassProperties:
         )
 
     @property
-    def com_m(self) -> NDArray[np.float64]:
+    def com_m(self) -> Floats:
         """Centre of mass, shape (..., 3); the origin for a massless body."""
         return self.first_kg_m / np.where(self.mass_kg > 0.0, self.mass_kg, 1.0)[..., None]
 
     @property
-    def inertia_kg_m2(self) -> NDArray[np.float64]:
+    def inertia_kg_m2(self) -> Floats:
         """Inertia tensor about the centre of mass, axes of the frame, shape (..., 3, 3)."""
         com = self.com_m
         central = self.second_kg_m2 - self.mass_kg[..., None, None] * (com[..., :, None] * com[..., None, :])
         trace = np.trace(central, axis1=-2, axis2=-1)
-        inertia: NDArray[np.float64] = trace[..., None, None] * np.eye(3) - central
+        inertia: Floats = trace[..., None, None] * np.eye(3) - central
         return inertia
 
     @property
-    def inertia_about_z_kg_m2(self) -> NDArray[np.float64]:
+    def inertia_about_z_kg_m2(self) -> Floats:
         """The last element of ``inertia_kg_m2``, to the last bit, in a third of the time; shape (...)."""
         com = self.com_m
         x, y, z = (self.second_kg_m2[..., i, i] - self.mass_kg * (com[..., i] * com[..., i]) for i in range(3))
         return x + y + z - z
 
 
-def _turned(vectors: NDArray[np.float64], turn: NDArray[np.float64]) -> NDArray[np.float64]:
+def _turned(vectors: Floats, turn: Floats) -> Floats:
     """Rotate every vector along the last axis; written out, so that the sum's order does not depend on their number."""
     return np.stack(
         [turn[i, 0] * vectors[..., 0] + turn[i, 1] * vectors[..., 1] + turn[i, 2] * vectors[..., 2] for i in range(3)],
@@ -311,7 +309,7 @@ steel_part = partial(Part, material=MATERIALS.steel, process="bought")
 
 @lru_cache(maxsize=1024)
 def _remembered(part: Part) -> MassProperties:
-    """The mass properties of a part of plain numbers, computed once: most parts do not depend on a link's length."""
+    """Return the mass properties of a part of plain numbers, computed once: most depend on no link's length."""
     return part._everywhere()
 
 

@@ -15,7 +15,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-Numbers = float | NDArray[np.float64]
+Floats = NDArray[np.float64]
+Numbers = float | Floats
 """A float, or an array of shape (n,) with one value per design."""
 
 
@@ -253,7 +254,7 @@ def _enclosed_mm2(pieces: tuple[Line | Arc, ...]) -> Numbers:
     return total
 
 
-def _columns(rows: Sequence[tuple[Numbers, ...]]) -> NDArray[np.float64]:
+def _columns(rows: Sequence[tuple[Numbers, ...]]) -> Floats:
     """Return the columns of a table of numbers, each of shape (pieces, ...)."""
     shape = next((value.shape for row in rows for value in row if isinstance(value, np.ndarray) and value.ndim), ())
     table = np.empty((len(rows[0]), len(rows), *shape))
@@ -268,16 +269,12 @@ def _added(moments: Moments) -> Moments:
     return Moments(*(reduce(np.add, getattr(moments, each.name))[()] for each in fields(moments)))
 
 
-def _twice_mm2(
-    x0: NDArray[np.float64], y0: NDArray[np.float64], x1: NDArray[np.float64], y1: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _twice_mm2(x0: Floats, y0: Floats, x1: Floats, y1: Floats) -> Floats:
     """Return twice the areas of triangles between the origin and straight lines."""
     return x0 * y1 - x1 * y0
 
 
-def _triangles(
-    x0: NDArray[np.float64], y0: NDArray[np.float64], x1: NDArray[np.float64], y1: NDArray[np.float64]
-) -> Moments:
+def _triangles(x0: Floats, y0: Floats, x1: Floats, y1: Floats) -> Moments:
     """Return the triangles between the origin and straight lines, one row per line."""
     twice = _twice_mm2(x0, y0, x1, y1)
     return Moments(
@@ -290,14 +287,8 @@ def _triangles(
     )
 
 
-def _arc_sectors(
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    r: NDArray[np.float64],
-    start: NDArray[np.float64],
-    end: NDArray[np.float64],
-) -> Moments:
-    """What arcs span with the origin: the sector with the arc's centre, and two triangles from there to the origin."""
+def _arc_sectors(x: Floats, y: Floats, r: Floats, start: Floats, end: Floats) -> Moments:
+    """Return what arcs span with the origin: sectors around their centres, and two triangles from each to it."""
     cos0, sin0, cos1, sin1 = np.cos(start), np.sin(start), np.cos(end), np.sin(end)
     turn, wave = end - start, sin1 * cos1 - sin0 * cos0
     r2, r3, r4 = r * r, r**3, r**4

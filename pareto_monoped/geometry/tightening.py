@@ -65,7 +65,7 @@ class ThreadSize:
 
 @lru_cache(maxsize=64)
 def thread_size(diameter_mm: float) -> ThreadSize:
-    """The coarse thread of a diameter; between the standard ones, which only a user's motor has, interpolated."""
+    """Return the coarse thread of a diameter, interpolated between standard ones for a user's motor."""
     sizes = sorted(COARSE_PITCHES_MM)
     if not sizes[0] <= diameter_mm <= sizes[-1]:
         raise DesignError(

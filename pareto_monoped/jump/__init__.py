@@ -1,1 +1,25 @@
-"""Stage 2: a robot becomes a MuJoCo model, jumps under the paper's controller, and its jump is measured."""
+"""Stage 2: a robot becomes a MuJoCo model, jumps under the paper's controller, and its jump is measured.
+
+Order of imports, lowest first: calibration_defaults, controller, controller_record; calibration, callback; end_stops,
+variations; model; population; evaluate, frames; peers, shared, single; balance; audit; screen, table1.
+"""
+
+__all__ = [
+    "audit",
+    "balance",
+    "calibration",
+    "calibration_defaults",
+    "controller",
+    "controller_record",
+    "end_stops",
+    "evaluate",
+    "frames",
+    "model",
+    "peers",
+    "population",
+    "screen",
+    "shared",
+    "single",
+    "table1",
+    "variations",
+]

@@ -4,4 +4,21 @@ What a link weighs follows from its parts and changes smoothly with its length. 
 shape (n,). Every part is described in the frame of its body: origin on the body's proximal joint axis (the hip for base
 and thigh, the knee for the shank), x forward, y up along the link, z along the joint axis, to the robot's right, with
 z = 0 in the middle plane of the leg. ``dimensions`` shows the lateral layout.
+
+Order of imports, lowest first: actuator_fit, chain_drives, sandwich; dimensions; chain, electronics, journal, sprocket,
+stops; hip, knee, stop_parts; base, shank, thigh_outline; stand, thigh.
 """
+
+__all__ = [
+    "actuator_fit",
+    "base",
+    "chain_drives",
+    "dimensions",
+    "electronics",
+    "journal",
+    "shank",
+    "stand",
+    "stops",
+    "thigh",
+    "thigh_outline",
+]

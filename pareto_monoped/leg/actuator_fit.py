@@ -45,32 +45,13 @@ class MotorDriver:
 
 # Holes: the authors' published actuator design files (motor driver mounts). All other figures: the makers' data sheets.
 # Neither says where the holes lie on the board; they are taken as centred on it.
+# The height of the first is our own estimate from its connectors; the data sheet gives none.
 MOTOR_DRIVERS = (
-    MotorDriver(
-        name="moteus r4.11",
-        mass_kg=0.0142,
-        width_mm=46.0,
-        length_mm=53.0,
-        height_mm=10.0,  # our own estimate from its connectors, the data sheet gives none
-        hole_width_mm=40.0,
-        hole_length_mm=38.0,
-        screw=M25,
-        voltage_v=44.0,
-        peak_current_a=100.0,
-    ),
-    MotorDriver(
-        name="ODrive Pro",
-        mass_kg=0.032,
-        width_mm=51.0,
-        length_mm=64.0,
-        height_mm=17.5,
-        hole_width_mm=45.0,
-        hole_length_mm=42.0,
-        screw=M3,
-        voltage_v=58.0,
-        peak_current_a=120.0,
-    ),
-)
+    MotorDriver(name="moteus r4.11", mass_kg=0.0142, width_mm=46.0, length_mm=53.0, height_mm=10.0,
+        hole_width_mm=40.0, hole_length_mm=38.0, screw=M25, voltage_v=44.0, peak_current_a=100.0),
+    MotorDriver(name="ODrive Pro", mass_kg=0.032, width_mm=51.0, length_mm=64.0, height_mm=17.5,
+        hole_width_mm=45.0, hole_length_mm=42.0, screw=M3, voltage_v=58.0, peak_current_a=120.0),
+)  # fmt: skip
 """From the lightest to the heaviest."""
 
 
@@ -80,7 +61,7 @@ def peak_current_a(motor: Motor) -> float:
 
 
 def motor_driver_for(motor: Motor) -> MotorDriver:
-    """The lightest driver that carries a motor; the strongest one if none does, which its part's note then says."""
+    """Return the lightest driver that carries a motor, or the strongest one, whose note then says what it lacks."""
     return next((driver for driver in MOTOR_DRIVERS if driver.carries(motor)), MOTOR_DRIVERS[-1])
 
 

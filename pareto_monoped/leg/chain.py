@@ -204,7 +204,7 @@ def _bar(half_mm: Numbers) -> tuple[Prism, ...]:
 
 
 def _across(low_mm: float, high_mm: float, side: float, half_width_mm: float) -> Path:
-    """A rectangle across the strand, from ``low_mm`` to ``high_mm`` along it, away from the turnbuckle's middle."""
+    """Return a rectangle across the strand, from ``low_mm`` to ``high_mm`` off the turnbuckle's middle."""
     return rectangle(width_mm=2.0 * half_width_mm, height_mm=high_mm - low_mm, y_mm=side * 0.5 * (low_mm + high_mm))
 
 

@@ -6,9 +6,8 @@ import numpy as np
 
 SAFETY = 5.0
 """Breaking load over the largest pull. Makers ask for 5 to 7 under shocks (DIN 8150), for chains up to 3 m/s."""
-_STOP_SHARE = (
-    1.8  # of the knee motor's peak torque: the chain's largest torque in the stop, Case A (its gearbox: 44 N m)
-)
+# Of the knee motor's peak torque: the chain's largest torque in the stop, Case A (its gearbox: 44 N m).
+_STOP_SHARE = 1.8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,36 +47,14 @@ class ChainDrive:
 # the thigh that 06B-1 with 8.9 kN needed. Pitch and rollers are equal, so that only the sprocket's width differs.
 # Fourteen teeth are the fewest at which the links clear the knee's bearing cups.
 CHAIN_DRIVES = tuple(
-    ChainDrive(
-        name=name,
-        pitch_mm=12.7,
-        roller_mm=7.75,
-        inner_width_mm=inner_width_mm,
-        inner_link_mm=inner_link_mm,
-        pin_mm=pin_mm,
-        pin_diameter_mm=pin_diameter_mm,
-        plate_mm=plate_mm,
-        kg_per_m=kg_per_m,
-        breaking_n=breaking_n,
-        teeth=14,
-        sprocket_width_mm=sprocket_width_mm,
-    )
-    for (
-        name,
-        inner_width_mm,
-        inner_link_mm,
-        pin_mm,
-        pin_diameter_mm,
-        plate_mm,
-        kg_per_m,
-        breaking_n,
-        sprocket_width_mm,
-    ) in (
+    ChainDrive(name=name, pitch_mm=12.7, roller_mm=7.75, inner_width_mm=inner, inner_link_mm=link, pin_mm=pin,
+        pin_diameter_mm=diameter, plate_mm=plate, kg_per_m=mass, breaking_n=breaks, teeth=14, sprocket_width_mm=width)
+    for name, inner, link, pin, diameter, plate, mass, breaks, width in (
         ("081", 3.3, 5.8, 10.2, 3.66, 9.91, 0.28, 8000.0, 3.0),
         ("083", 4.88, 7.9, 12.9, 4.09, 10.3, 0.42, 11600.0, 4.4),
         ("084", 4.88, 8.8, 14.8, 4.09, 11.15, 0.59, 15600.0, 4.4),
     )
-)
+)  # fmt: skip
 """From the weakest to the strongest."""
 
 

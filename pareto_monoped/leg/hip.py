@@ -126,7 +126,7 @@ def _output_dowels(
 
 
 def _knee_mount_dowels(d: LegDimensions) -> Part:
-    """The dowels between the outer plate and the knee actuator's case: they carry its torque and the chain's pull."""
+    """Build the dowels of the knee actuator's case in the outer plate: they carry its torque and the chain's pull."""
     holes = d.knee.mount_dowel
     return dowel_part(
         "knee_mount_dowel",

@@ -118,10 +118,7 @@ def _axle(d: LegDimensions) -> Part:
     bolts, dowels, blind = axle_holes(), axle_dowels(), half_gap - DOWEL_DEPTH
 
     def both(radius_mm: float, low_mm: float, high_mm: float, *holes: Pattern) -> tuple[Prism, Prism]:
-        return (
-            disc(radius_mm, -high_mm, -low_mm, bolts, *holes),
-            disc(radius_mm, low_mm, high_mm, bolts, *holes),
-        )
+        return (disc(radius_mm, -high_mm, -low_mm, bolts, *holes), disc(radius_mm, low_mm, high_mm, bolts, *holes))
 
     return strong_part(
         name="knee_axle",

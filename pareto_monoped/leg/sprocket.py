@@ -9,14 +9,13 @@ drive.
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.actuator.needles import roller_bearing
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism, disc, layer, steel_part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role
 from pareto_monoped.geometry.screws import M3
-from pareto_monoped.geometry.shapes import Arc, Circle, Line, Path, Pattern, Shape
+from pareto_monoped.geometry.shapes import Arc, Circle, Floats, Line, Path, Pattern, Shape
 from pareto_monoped.leg.chain_drives import ChainDrive
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.materials import ALLOYS, MATERIALS
@@ -50,7 +49,7 @@ def sprocket_outline(drive: ChainDrive) -> Path:
         angle = 2.0 * np.pi * tooth / teeth
         turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
-        def line(start: NDArray[np.float64], stop: NDArray[np.float64], turn: NDArray[np.float64] = turn) -> Line:
+        def line(start: Floats, stop: Floats, turn: Floats = turn) -> Line:
             a, b = turn @ start, turn @ stop
             return Line(float(a[0]), float(a[1]), float(b[0]), float(b[1]))
 

@@ -64,10 +64,7 @@ def _bumper(name: str, stop: JointStop, seat: Face, partner: str) -> Part:
 
 def _both_sides(outline: Path, one_mm: float, other_mm: float) -> tuple[Prism, Prism]:
     """Build a layer of a part and its image below the middle plane."""
-    return (
-        layer(outline, -other_mm, -one_mm),
-        layer(outline, one_mm, other_mm),
-    )
+    return (layer(outline, -other_mm, -one_mm), layer(outline, one_mm, other_mm))
 
 
 def _straddling(name: str, role: Role, placed: Face, d: LegDimensions, stop: JointStop) -> Part:

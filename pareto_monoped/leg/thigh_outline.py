@@ -58,7 +58,7 @@ def _fillet(y_mm: Numbers, d: LegDimensions) -> Pulley:
 
 
 def _corner(face: Face, end_mm: float, width_mm: float = 0.0) -> Pulley:
-    """A corner of the edge on which a seat or striker stands that ends at ``end_mm``, ``width_mm`` behind the edge."""
+    """Return a corner of an edge under a seat or striker that ends at ``end_mm``, ``width_mm`` behind the edge."""
     spare = math.copysign(_SPARE - _CORNER, end_mm)
     x, y = face.point(end_mm + spare, WING + _CORNER + width_mm)
     return Pulley(x_mm=x, y_mm=y, radius_mm=_CORNER)
@@ -113,7 +113,7 @@ def heel_arm_mm(d: LegDimensions) -> float:
 
 
 def _heel(face: Face, d: LegDimensions) -> tuple[Pulley, ...]:
-    """The heel with the seat for extension, from behind to the front; its front runs straight up past the knee."""
+    """Return the heel with the seat for extension, from behind to its front, which runs straight up past the knee."""
     stop = knee_stop(d)
     x, y = face.point(-heel_arm_mm(d), WING - _HEEL_FILLET)
     root = Pulley(x_mm=x, y_mm=y, radius_mm=_HEEL_FILLET, inside=False)

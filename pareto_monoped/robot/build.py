@@ -11,8 +11,9 @@ from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.ratiomap import Maps, joint_maps
 from pareto_monoped.design import Design
 from pareto_monoped.geometry.parts import MassProperties, Part, total
+from pareto_monoped.geometry.shapes import Floats
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
-from pareto_monoped.robot.units import BODIES, UNITS, ActuatorSized, Floats, LinkSized, in_body
+from pareto_monoped.robot.units import BODIES, UNITS, ActuatorSized, LinkSized, in_body
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -13,10 +13,11 @@ from pydantic import ConfigDict, Field
 from pareto_monoped.actuator.ratiomap import JointMaps, Maps, joint_maps
 from pareto_monoped.design import NAMES, complete
 from pareto_monoped.geometry.parts import MassProperties
+from pareto_monoped.geometry.shapes import Floats
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
 from pareto_monoped.robot.tables import actuator_table, actuator_units, drive_turning, weighed
-from pareto_monoped.robot.units import BODIES, JOINTS, UNITS, ActuatorSized, Floats
+from pareto_monoped.robot.units import BODIES, JOINTS, UNITS, ActuatorSized
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,34 +56,34 @@ class RobotArrays:
     left (the joint axes), z up; at zero joint angles both links hang straight down along -z.
     """
 
-    thigh_length_m: NDArray[np.float64]  #: hip axis to knee axis, shape (n,)
-    shank_length_m: NDArray[np.float64]  #: knee axis to foot centre, shape (n,)
-    body_mass_kg: NDArray[np.float64]  #: shape (n, 3)
-    body_com_m: NDArray[np.float64]  #: centres of mass in the body frames, shape (n, 3, 3)
-    body_inertia_kg_m2: NDArray[np.float64]  #: about the centres of mass, axes of the body frames, shape (n, 3, 3, 3)
-    foot_radius_m: NDArray[np.float64]  #: shape (n,)
-    start_height_m: NDArray[np.float64]  #: of the base above the floor at rest, shape (n,)
-    ratio: NDArray[np.float64]  #: real ratios of the gearboxes (not the searched ones), shape (n, 2)
+    thigh_length_m: Floats  #: hip axis to knee axis, shape (n,)
+    shank_length_m: Floats  #: knee axis to foot centre, shape (n,)
+    body_mass_kg: Floats  #: shape (n, 3)
+    body_com_m: Floats  #: centres of mass in the body frames, shape (n, 3, 3)
+    body_inertia_kg_m2: Floats  #: about the centres of mass, axes of the body frames, shape (n, 3, 3, 3)
+    foot_radius_m: Floats  #: shape (n,)
+    start_height_m: Floats  #: of the base above the floor at rest, shape (n,)
+    ratio: Floats  #: real ratios of the gearboxes (not the searched ones), shape (n, 2)
     #: Reflected inertia of all that turns with the motor, at the joint, shape (n, 2)
-    armature_kg_m2: NDArray[np.float64]
+    armature_kg_m2: Floats
     #: Of what turns at the motor's speed, about the motor's axis, shape (n, 2)
-    rotor_inertia_kg_m2: NDArray[np.float64]
+    rotor_inertia_kg_m2: Floats
     #: knee_reflected_kg_m2, knee_coupling_kg_m2: C and B of everything that turns against the thigh: the knee actuator,
     #: its drive sprocket and the chain, see ``rotation``, shape (n,)
-    knee_reflected_kg_m2: NDArray[np.float64]
-    knee_coupling_kg_m2: NDArray[np.float64]
+    knee_reflected_kg_m2: Floats
+    knee_coupling_kg_m2: Floats
     #: What the knee motor's rotor has beyond its share of the thigh's inertia, shape (n,)
-    rotor_excess_kg_m2: NDArray[np.float64]
-    sprocket_radius_m: NDArray[np.float64]  #: pitch radius of the chain's sprockets, shape (n,)
-    peak_torque_n_m: NDArray[np.float64]  #: at the joint, before losses, shape (n, 2)
-    continuous_torque_n_m: NDArray[np.float64]  #: likewise
-    no_load_speed_rad_per_s: NDArray[np.float64]  #: at the joint, shape (n, 2)
-    efficiency: NDArray[np.float64]  #: of the gear meshes, shape (n, 2)
-    efficiency_total: NDArray[np.float64]  #: of the whole gearbox, shape (n, 2)
+    rotor_excess_kg_m2: Floats
+    sprocket_radius_m: Floats  #: pitch radius of the chain's sprockets, shape (n,)
+    peak_torque_n_m: Floats  #: at the joint, before losses, shape (n, 2)
+    continuous_torque_n_m: Floats  #: likewise
+    no_load_speed_rad_per_s: Floats  #: at the joint, shape (n, 2)
+    efficiency: Floats  #: of the gear meshes, shape (n, 2)
+    efficiency_total: Floats  #: of the whole gearbox, shape (n, 2)
     #: torque_constant_n_m_per_a, winding_resistance_ohm: of the motor itself, as its equivalent DC machine, whose
     #: resistance is line to line; shape (n, 2)
-    torque_constant_n_m_per_a: NDArray[np.float64]
-    winding_resistance_ohm: NDArray[np.float64]
+    torque_constant_n_m_per_a: Floats
+    winding_resistance_ohm: Floats
     reason: tuple[str, ...]  #: why the robot cannot be built, empty if it can, n strings
     stops: JointStops  #: the end stops, which all robots with the same actuator maps share
 
@@ -183,7 +184,7 @@ def _unit_masses(
 
 
 def _body_masses(units: dict[str, MassProperties], options: MassOptions) -> list[MassProperties]:
-    """The units of each body together, in the order of ``BODIES``, after the options have replaced what they name."""
+    """Add up the units of each body in the order of ``BODIES``, after the options replaced what they name."""
     masses = dict(units)
     for name, mass_kg in (("base_frame", options.base_structure_mass_kg), ("foot", options.foot_mass_kg)):
         if mass_kg is not None:

@@ -28,6 +28,7 @@ from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.actuator.service.sheet import service_sheet
 from pareto_monoped.geometry.parts import MassProperties, Part, total
 from pareto_monoped.geometry.roles import Group, Role
+from pareto_monoped.geometry.shapes import Floats
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.thigh import thigh_parts
 from pareto_monoped.robot.units import UNITS, ActuatorSized, LinkSized
@@ -48,7 +49,7 @@ def rotor_inertia_kg_m2(actuator: Actuator) -> float:
 
 
 def rotor_excess_kg_m2(actuator: Actuator) -> float:
-    """Inertia of the motor's rotor by its data sheet, less that of the envelope that weighs it among the parts."""
+    """Return the inertia of the motor's rotor by its data sheet, less that of the envelope among the parts."""
     drawn = sum(
         float(part.mass_properties().inertia_kg_m2[2, 2]) for part in actuator.parts if part.role is Role.MOTOR_ROTOR
     )
@@ -93,7 +94,6 @@ def _line(values: list[float]) -> tuple[float, float]:
     return at_low - slope * low, slope
 
 
-Floats = NDArray[np.float64]
 Weigh = Callable[[Floats], Sequence[MassProperties]]
 """Lengths in metres, shape (n,) -> the mass properties of each of the m units, one row per length."""
 _EXACT = 1e-13  # of the largest mass, first or second moment: a few hundred roundings, which no jump can show

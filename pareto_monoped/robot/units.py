@@ -7,18 +7,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.geometry.parts import MassProperties, Part
-from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.geometry.shapes import Floats, Numbers
 from pareto_monoped.leg.base import base_parts
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.journal import journal_parts
 from pareto_monoped.leg.shank import foot_part, shank_parts
 from pareto_monoped.leg.thigh import thigh_parts
 
-Floats = NDArray[np.float64]
 BODIES = ("base", "thigh", "shank")
 JOINTS = ("hip", "knee")
 PART_TO_BODY: Floats = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])

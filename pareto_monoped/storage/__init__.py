@@ -1,1 +1,22 @@
-"""Stored studies: trials, checkpoints and results in SQLite files or on a PostgreSQL server, and their integrity."""
+"""Stored studies: trials, checkpoints and results in SQLite files or on a PostgreSQL server, and their integrity.
+
+Order of imports, lowest first: columns, connection; failures, file; server; place; base, kept_front, meta, seals;
+extra_rows, lock, optuna_tables, reader; front_reader; status, store; optuna_check.
+"""
+
+__all__ = [
+    "base",
+    "columns",
+    "connection",
+    "extra_rows",
+    "front_reader",
+    "kept_front",
+    "lock",
+    "meta",
+    "optuna_check",
+    "place",
+    "reader",
+    "seals",
+    "status",
+    "store",
+]

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pareto_monoped.errors import DatabaseError
+from pareto_monoped.storage.address import Server
 from pareto_monoped.storage.connection import Connection
-from pareto_monoped.storage.place import Server
 
 if TYPE_CHECKING:
     from optuna.storages import RDBStorage

@@ -6,7 +6,7 @@ import psycopg
 from sqlalchemy.exc import PendingRollbackError
 
 from pareto_monoped.errors import DatabaseError, DiskError, ParetoMonopedError, ServerError
-from pareto_monoped.storage.place import Server
+from pareto_monoped.storage.address import Server
 
 _AWAY = ("57P01", "57P02", "57P03", "08000", "08001", "08003", "08004", "08006")
 """States of SQL: the server is shut down, starts, or has no connection."""

@@ -21,11 +21,11 @@ from psycopg.conninfo import conninfo_to_dict
 from psycopg.pq import TransactionStatus
 
 from pareto_monoped.errors import DatabaseError
+from pareto_monoped.storage.address import Server, schema_for
 from pareto_monoped.storage.base import Storage, StudyLock, error_behind
 from pareto_monoped.storage.columns import listed
 from pareto_monoped.storage.connection import Connection, Rows
 from pareto_monoped.storage.failures import failure
-from pareto_monoped.storage.place import Server, schema_for
 
 if TYPE_CHECKING:
     from optuna.storages import RDBStorage

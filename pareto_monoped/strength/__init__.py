@@ -10,4 +10,9 @@ To add joints, write a module with pure formulas and a tuple of rows, such as ``
 gearbox of a map; that of a ``LegJoint``, which has no ``side``, once per map. Its ``factor`` then gets arrays. It must
 be elementwise, because a design's result may not depend on the batch. Screw sizes, circles, depths and materials come
 from the records that also build the parts.
+
+Order of imports, lowest first: connections, groups; joint; chain, drive, gears, links, plates; knee, stops, threads;
+mounts; factors.
 """
+
+__all__ = ["factors", "groups", "joint"]

@@ -71,7 +71,7 @@ def stud_fatigue_n(diameter_mm: float, cycles: float) -> float:
 
 
 def strip_n(diameter_mm: float, engaged_mm: float, yield_mpa: float) -> float:
-    """Pull at which a tapped thread yields in shear on the screw's outer diameter (area after ISO 898-1, annex)."""
+    """Return the pull at which a tapped thread yields in shear on the screw's outer diameter (ISO 898-1, annex)."""
     thread = thread_size(diameter_mm)
     width = 0.5 * thread.pitch_mm + (diameter_mm - thread.flank_diameter_mm) * np.tan(np.pi / 6.0)
     area = np.pi * diameter_mm * width * engaged_mm / thread.pitch_mm

@@ -73,7 +73,7 @@ def thread_force_n(thread: ThreadSize, engaged_mm: float, shear_mpa: float) -> f
 
 
 def head_force_n(fastening: Fastening, yield_mpa: float) -> float:
-    """Axial force at which the head's bearing face reaches the pressure that the clamped part carries (eq. R10/1)."""
+    """Return the axial force at which a head's bearing face reaches the pressure that a part carries (eq. R10/1)."""
     return float(0.25 * np.pi * (fastening.bearing_mm**2 - fastening.hole_mm**2) * _PRESSURE * yield_mpa)
 
 
@@ -122,7 +122,7 @@ def bond_torque_n_m(radius_mm: float, length_mm: float) -> float:
 
 
 def pin_bending_force_n(diameter_mm: float, span_mm: float, yield_mpa: float) -> float:
-    """Even load over the span at which a pin on two supports yields in its middle: M = F L / 8, W = pi d^3 / 32."""
+    """Return the even load at which a pin on two supports yields: M = F L / 8, W = pi d^3 / 32."""
     return float(yield_mpa * np.pi * diameter_mm**3 / 32.0 * 8.0 / span_mm)
 
 

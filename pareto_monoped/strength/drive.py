@@ -63,7 +63,7 @@ def layout_of(s: Structure) -> Layout:
 
 
 def engaged_mm(pin: Part, other: Part) -> float:
-    """Length over which a circle of pins stands in the holes that another part of the same frame has for them."""
+    """Return the length over which a circle of pins stands in its holes in another part of the same frame."""
     low, high = min(float(p.z0_mm) for p in pin.prisms), max(float(p.z1_mm) for p in pin.prisms)
     return sum(
         max(0.0, min(high, float(prism.z1_mm)) - max(low, float(prism.z0_mm)))
@@ -194,13 +194,13 @@ _RING_SHARE = 0.35
 
 
 def ring(s: Structure) -> float:
-    """Output torque at which the ring turns in its housing, bonded; the ring takes the share 1 - 1 / i of it."""
+    """Return the output torque at which the bonded ring turns in its housing; it takes 1 - 1 / i of it."""
     at = layout_of(s)
     return bond_torque_n_m(float(at.r_ring), s.actuator.face_width_mm) / (1.0 - 1.0 / s.actuator.ratio)
 
 
 def ring_housing(s: Structure) -> float:
-    """Output torque at which the dowels between ring housing and casing yield a hole; infinite in an ESSPG."""
+    """Return the output torque at which the dowels of the ring housing yield a hole; infinite in an ESSPG."""
     pins = [part for part in s.actuator.parts if part.role is Role.PIN and part.group is Group.HOUSING]
     if not pins:
         return float(np.inf)
@@ -324,7 +324,7 @@ def screws(s: Structure) -> float:
 
 
 def bending(s: Structure) -> float:
-    """Output torque at which a web yields at its ends, as a beam clamped in both carriers; infinite without webs."""
+    """Return the output torque at which a web, clamped in both carriers, yields at its ends; infinite without webs."""
     at = layout_of(s)
     webs = at.webs
     if not webs.present:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.ratiomap import ActuatorMap, JointMaps, Maps, joint_maps
 from pareto_monoped.design import NAMES, Design, complete
+from pareto_monoped.geometry.shapes import Floats
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.strength import chain, drive, gears, knee, links, mounts, plates, stops, threads
 from pareto_monoped.strength.gears import MOST_JUMPS, strike_life_jumps
@@ -44,7 +45,6 @@ TABLE: tuple[ActuatorJoint | LegJoint, ...] = (
     *plates.JOINTS,
 )
 """All rows. A module with joints of its own adds its tuple here."""
-Floats = NDArray[np.float64]
 MOST_FACTOR = 1000.0
 """Factors are cut here, because a joint without load would have an infinite one, which JSON cannot hold."""
 Of = Side | Literal["leg"]

@@ -7,14 +7,12 @@ from dataclasses import dataclass, fields
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.shapes import Floats
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.strength.groups import INFORMING, Group
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -74,7 +74,7 @@ def _dowels(s: Structure) -> float:
 
 
 def stop_direction(s: Structure) -> float:
-    """Cosine of the angle between the chain's pull on the shank, towards the hip, and the push of the stop."""
+    """Return the cosine between the chain's pull on the shank, towards the hip, and the push of the stop."""
     stop = knee_stop(s.leg)
     extension, _ = knee_strikers(s.leg)
     # The shank turns clockwise, seen along -z; the bumper pushes against the striker's face.
@@ -122,7 +122,7 @@ def tube_modulus_mm3(outer_mm: float, inner_mm: float) -> float:
 
 
 def bending_and_torsion(limit_mpa: Any, bent_per_n: Any, twisted_per_n_m: Any, pull_n: Any, torque_n_m: Any) -> Any:
-    """Yield stress over the von Mises stress; stresses per newton of pull and per newton metre of torque, MPa."""
+    """Return yield over von Mises stress; stresses are in MPa per N of pull and per N m of torque."""
     return limit_mpa / np.sqrt(np.square(bent_per_n * pull_n) + 3.0 * np.square(twisted_per_n_m * torque_n_m))
 
 
@@ -157,7 +157,7 @@ def shaft_n(s: Structure) -> float:
 
 
 def _rim_inside_holes(coupling: Part) -> tuple[float, float]:
-    """Outer and inner radius of the ring of a coupling that none of its screws, dowels and lightening holes cuts."""
+    """Return outer and inner radius of the ring of a coupling that none of its holes cuts."""
     (prism,) = coupling.prisms
     around = min(float(h.pitch_radius_mm) - float(h.radius_mm) for h in prism.holes if isinstance(h, Pattern))
     bore = max(float(h.radius_mm) for h in prism.holes if isinstance(h, Circle))

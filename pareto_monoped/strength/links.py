@@ -48,7 +48,7 @@ def side_stress_mpa(moment_n_m: Any, axial_n: Any, across_n: Any, clear_mm: Any,
 
 
 def rung_stress_mpa(across_n: Any, pitch_mm: Any, plate: "tuple[Any, Any, Any]") -> Any:
-    """Stress at the ends of a rung of one plate, where it leaves the sides; arguments as for ``side_stress_mpa``."""
+    """Return the stress at the ends of a plate's rung, where it leaves the sides; see ``side_stress_mpa``."""
     half, window, thickness = plate
     moment = 0.5 * across_n * pitch_mm * window / (0.5 * (half + window))
     return moment / (thickness * (2.0 * BRIDGE) ** 2 / 6.0)

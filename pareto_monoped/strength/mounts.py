@@ -53,7 +53,7 @@ def _torque_and_force(pin: Part, *layers: tuple[float, float]) -> tuple[float, f
 
 
 def hip_output(s: Structure) -> tuple[float, float]:
-    """Torque and force that the dowels between the hip's output flange, its coupling and the thigh's plate carry."""
+    """Return torque and force that the dowels between hip's output, its coupling and the thigh's plate carry."""
     d = s.leg
     pin = _circle(hip_joints(d), Role.PIN, d.hip.output_dowel.pitch_radius_mm, Group.FIXED)
     low, high = _ends(pin)
@@ -62,7 +62,7 @@ def hip_output(s: Structure) -> tuple[float, float]:
 
 
 def knee_output(s: Structure) -> tuple[float, float]:
-    """Torque and force that the dowels between the knee's output flange, its coupling and the drive sprocket carry."""
+    """Return torque and force that the dowels between knee's output, its coupling and the drive sprocket carry."""
     d, parts = s.leg, hip_joints(s.leg)
     pin = _circle(parts, Role.PIN, d.drive_dowel.pitch_radius_mm, Group.KNEE_DRIVE)
     sprocket = next(part for part in parts if part.role is Role.SPROCKET)

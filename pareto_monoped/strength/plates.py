@@ -43,7 +43,7 @@ def net_section(half_mm: Any, thickness_mm: float, place_mm: float, hole_mm: flo
 
 
 def column_mpa(euler_mpa: Any, yield_mpa: Any) -> Any:
-    """Stress at which a column fails: Euler's up to half the yield stress, beyond that Johnson's parabola."""
+    """Return the stress at which a column fails: Euler's up to half the yield stress, then Johnson's parabola."""
     return np.where(
         euler_mpa < 0.5 * yield_mpa,
         euler_mpa,
@@ -64,7 +64,7 @@ def clamped_mpa(length_mm: float, thickness_mm: float, modulus_mpa: float) -> fl
 
 
 def pressed_mpa(moment_n_m: Any, axial_n: Any, half_mm: Any, window_mm: Any, thickness_mm: Any) -> Any:
-    """Mean pressure in the pressed side of a plate: M over the distance of the sides' axes, and half of N."""
+    """Return the mean pressure in a plate's pressed side: M over the distance of the sides' axes, and half of N."""
     side = half_mm - window_mm
     return (1e3 * moment_n_m / (half_mm + window_mm) + 0.5 * axial_n) / (side * thickness_mm)
 

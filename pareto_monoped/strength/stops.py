@@ -55,7 +55,7 @@ def cantilever_n(arm_mm: float, thick_mm: float, high_mm: float, yield_mpa: floa
 
 
 def rod_n(radius_mm: float, bore_mm: float, from_support_mm: float, yield_mpa: float) -> float:
-    """Force across a tube at which it yields, near one of its supports: M = F a, more than F a b / (a + b)."""
+    """Return the force across a tube at which it yields near a support: M = F a, more than F a b / (a + b)."""
     modulus = 0.25 * np.pi * (radius_mm**4 - bore_mm**4) / radius_mm
     return float(modulus * yield_mpa / from_support_mm)
 

@@ -100,7 +100,7 @@ def threaded_mpa(screw: Part, parts: Sequence[Part]) -> float | None:
 
 
 def least_tightened(parts: Sequence[Part], seat_mpa: float) -> float:
-    """The least of ``tightened`` over the screws that are driven into one of these parts; infinite without any."""
+    """Return the least of ``tightened`` over the screws that are driven into one of these parts; infinite without."""
     found = [
         tightened(screw, limit, seat_mpa)
         for screw in parts

@@ -3,7 +3,7 @@
 import pytest
 
 from pareto_monoped.errors import DatabaseError
-from pareto_monoped.storage.place import LONGEST_SCHEMA, is_address, schema_for, server_of
+from pareto_monoped.storage.address import LONGEST_SCHEMA, is_address, schema_for, server_of
 
 
 @pytest.mark.parametrize(

@@ -5,3 +5,5 @@ cycles, S-N curves and permissible loads. ``build`` and ``stage`` put them toget
 finds the least face width, ``sheet`` rates gear sets in full, ``strike`` those whose stop is struck in every jump.
 Symbols and clauses are those of ISO 6336:2006; everything is in mm, N and MPa, as in the standard.
 """
+
+__all__ = ["sheet"]

@@ -139,7 +139,7 @@ def _tangent_angle(z: Numbers, depth: Numbers, turned: Numbers, *, internal: boo
 
 
 def _load_point(gear: ExternalGear | InternalGear, contact_ratio: Numbers) -> tuple[Numbers, Numbers]:
-    """Diameter d_en of the outer point of single pair contact, in modules, and the angle there; negative for a ring."""
+    """Return d_en of the outer point of single pair contact, in modules, and the angle there; negative for a ring."""
     sign = -1.0 if isinstance(gear, InternalGear) else 1.0
     base, tip = gear.base_radius_mm / gear.module_mm, gear.tip_radius_mm / gear.module_mm
     pitch = np.pi * np.cos(PRESSURE_ANGLE_RAD)
@@ -155,6 +155,6 @@ def external_rim_factor(rim_over_depth: Numbers) -> Numbers:
 
 
 def internal_rim_factor(rim_over_module: Numbers) -> Numbers:
-    """Y_B of a ring by the rim's thickness over the module (ISO 6336-3, clause 9.3); below 1.75 as it goes on."""
+    """Return Y_B of a ring by the rim's thickness over the module (ISO 6336-3, clause 9.3), also below 1.75."""
     thin = 1.15 * np.log(8.324 / np.maximum(rim_over_module, 0.1))
     return np.where(rim_over_module < 3.5, np.maximum(thin, 1.0), 1.0)[()]

@@ -67,11 +67,7 @@ class GearRating:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MeshRating:
-    """Sun with planet, or planet with ring.
-
-    Attributes:
-        overload_face_load_factor, ...: the same four under the overload, without K_A and K_V.
-    """
+    """Sun with planet, or planet with ring; factors named ``overload_`` are without K_A and K_V."""
 
     tangential_force_n: float  #: F_t at the motor's peak torque, if the planets shared it evenly
     pitch_speed_m_per_s: float  #: against the carrier, at the motor's no-load speed

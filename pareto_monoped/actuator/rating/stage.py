@@ -145,7 +145,7 @@ class Stage:
         return max(parts.rating.overload_factor, highest_share(parts.duty))
 
     def single_loads(self, width_mm: Numbers, share: Numbers) -> tuple[MeshLoad, MeshLoad]:
-        """Loads of both meshes under a torque of ``share`` times the peak torque in gears that stand still, K_A 1."""
+        """Return the loads of both meshes under ``share`` times the peak torque in gears that stand still, K_A 1."""
         return self._loads(width_mm, share, moving=False)
 
     def _loads(self, width_mm: Numbers, factor: Numbers, *, moving: bool) -> tuple[MeshLoad, MeshLoad]:

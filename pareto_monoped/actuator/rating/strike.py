@@ -7,7 +7,6 @@ time, so that it is one load cycle per jump.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.actuator.rating.capacity import (
     FLANK_CURVES,
@@ -18,7 +17,7 @@ from pareto_monoped.actuator.rating.capacity import (
     reversal_ratio,
 )
 from pareto_monoped.actuator.rating.stage import Member, MeshLoad, Stage
-from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.geometry.shapes import Floats, Numbers
 
 _CLOSE, _MOST_STEPS = 1e-13, 100
 """Of the logarithm of safety over required safety, where the search of a torque ends; it takes about ten steps."""
@@ -51,9 +50,7 @@ def _usual_share(stage: Stage) -> float:
     return stage.settings.parts.rating.application_factor * highest_share(stage.settings.parts.duty)
 
 
-def strike_shares(
-    stage: Stage, width_mm: NDArray[np.float64], required: tuple[float, float]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def strike_shares(stage: Stage, width_mm: Floats, required: tuple[float, float]) -> tuple[Floats, Floats]:
     """Return the torques of a strike in every jump, over the peak torque, at which flanks and roots have the required
     safeties.
 
@@ -64,10 +61,10 @@ def strike_shares(
     """
     jumps = stage.settings.parts.duty.jumps
 
-    def spare(log_shares: NDArray[np.float64]) -> NDArray[np.float64]:
+    def spare(log_shares: Floats) -> Floats:
         flank, root = strike_safeties(stage, width_mm, np.exp(log_shares), jumps)
         least = np.stack([np.asarray(flank)[0], np.asarray(root)[1]])
-        logs: NDArray[np.float64] = np.log(least / np.array(required)[:, None])
+        logs: Floats = np.log(least / np.array(required)[:, None])
         return logs
 
     low = np.full((2, len(width_mm)), np.log(_usual_share(stage)))

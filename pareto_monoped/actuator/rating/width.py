@@ -13,7 +13,7 @@ from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.rating.build import build_stage
 from pareto_monoped.actuator.rating.stage import Safeties, Stage, required
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.geometry.shapes import Floats, Numbers
 
 _SCAN = 12
 """Face widths that are tried first, evenly spread between the limits."""
@@ -51,7 +51,7 @@ class WidthBounds:
     """
 
     #: A width that ``least_width_mm`` does not go below; where ``hopeless``, the one that it returns
-    floor_mm: NDArray[np.float64]
+    floor_mm: Floats
     #: Sets for which the largest width is enough; so is every width between the least one and that
     enough: NDArray[np.bool_]
     #: Sets for which it is not enough, although safety still grows there, so that no width is
@@ -76,7 +76,7 @@ def width_bounds(stage: Stage, off: Collection[str] = ()) -> WidthBounds:
     return WidthBounds(floor_mm=_in_mm(np.where(hopeless, high, floor), stage), enough=enough, hopeless=hopeless)
 
 
-def least_width_mm(stage: Stage, off: Collection[str] = (), bounds: WidthBounds | None = None) -> NDArray[np.float64]:
+def least_width_mm(stage: Stage, off: Collection[str] = (), bounds: WidthBounds | None = None) -> Floats:
     """Return the least multiple of the step at which all safety factors are kept.
 
     Where the largest width is not enough, but safety no longer grows there, a few widths are tried first, to find the
@@ -108,15 +108,15 @@ def least_width_mm(stage: Stage, off: Collection[str] = (), bounds: WidthBounds 
     return _in_mm(np.where(np.isfinite(good), good, best), stage).reshape(shape)
 
 
-def _margin(stage: Stage, steps: NDArray[np.float64], off: Collection[str]) -> NDArray[np.float64]:
+def _margin(stage: Stage, steps: Floats, off: Collection[str]) -> Floats:
     """Return the least margin of strength at widths in steps."""
     margins = strength_margins(stage.safeties(steps * stage.settings.parts.rating.face_step_mm), stage)
     kept = [value for rule, value in margins.items() if rule not in off]
     return np.asarray(reduce(np.minimum, kept)) if kept else np.full(steps.shape, np.inf)
 
 
-def _shortage(stage: Stage, steps: NDArray[np.float64], off: Collection[str]) -> NDArray[np.float64]:
-    """The load at a width over the one that is carried with the safety factors required; of the worst flank or root."""
+def _shortage(stage: Stage, steps: Floats, off: Collection[str]) -> Floats:
+    """Return the load at a width over the one carried with the safety required, of the worst flank or root."""
     found = stage.safeties(steps * stage.settings.parts.rating.face_step_mm)
     least = required(stage.settings)
     shares = [
@@ -128,27 +128,25 @@ def _shortage(stage: Stage, steps: NDArray[np.float64], off: Collection[str]) ->
     return reduce(np.maximum, shares, np.zeros(steps.shape))
 
 
-def _limits(stage: Stage) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _limits(stage: Stage) -> tuple[Floats, Floats]:
     """Return the least and largest width allowed, in steps; whole numbers."""
     step = stage.settings.parts.rating.face_step_mm
     low = np.atleast_1d(np.ceil(np.round(stage.width_low_mm / step, 6)))
     return low, np.maximum(low, np.atleast_1d(np.floor(np.round(stage.width_high_mm / step, 6))))
 
 
-def _in_mm(steps: NDArray[np.float64], stage: Stage) -> NDArray[np.float64]:
+def _in_mm(steps: Floats, stage: Stage) -> Floats:
     step = stage.settings.parts.rating.face_step_mm
     # Divided by a whole number where there is one: 123 steps of 0.1 mm are then 12.3 mm to the last bit.
     return steps / round(1.0 / step) if round(1.0 / step) * step == 1.0 else steps * step
 
 
-def _tried(low: NDArray[np.float64], high: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+def _tried(low: Floats, high: Floats) -> list[Floats]:
     """Return the widths tried first, from the least to the largest, in steps."""
     return [np.round(low + share * (high - low)) for share in np.linspace(0.0, 1.0, _SCAN)]
 
 
-def _scanned(
-    stage: Stage, low: NDArray[np.float64], high: NDArray[np.float64], off: Collection[str]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def _scanned(stage: Stage, low: Floats, high: Floats, off: Collection[str]) -> tuple[Floats, Floats, Floats]:
     """Return the widths tried first, from ``low`` to ``high``; a set is left alone once a width is enough.
 
     Returns:
@@ -184,7 +182,7 @@ LEAST_WIDTH_MODULES = 6.0
 """Face width is at least this many modules (Niemann/Winter: 6 to 10 for narrow gears), where strength asks for less."""
 
 
-def lewis_form_factor(teeth: Numbers) -> NDArray[np.float64]:
+def lewis_form_factor(teeth: Numbers) -> Floats:
     """Return Y, interpolated linearly; constant beyond the table's ends."""
     return np.asarray(np.interp(teeth, _LEWIS[:, 0], _LEWIS[:, 1]))
 

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.assumptions import ServiceData, life_turns, output_turns_per_hour
@@ -30,9 +29,9 @@ from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.design import GRAVITY_M_PER_S2
 from pareto_monoped.geometry.gears import PRESSURE_ANGLE_RAD
 from pareto_monoped.geometry.roles import Group, Role
+from pareto_monoped.geometry.shapes import Floats
 
 Place = Literal["main, knee", "far, knee", "main, hip", "end", "rear", "planets"]
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,7 +114,7 @@ def hip_force_n(actuator: Actuator, at: Layout, service: ServiceData) -> float:
 
 
 def uneven_force_n(actuator: Actuator, settings: ActuatorSettings) -> float:
-    """Radial force on the sun at the peak torque: what one planet's teeth press above the mean, (K_gamma - 1) of it."""
+    """Return the sun's radial force at the peak torque: (K_gamma - 1) of one planet's mean tooth force."""
     gears = actuator.gears
     radius_m = 0.5e-3 * float(gears.module_mm) * float(gears.sun_teeth)
     tangential = actuator.motor.peak_torque_n_m / (radius_m * float(gears.planets))

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from functools import lru_cache, reduce
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.actuator.assumptions import ServiceData, life_turns, output_turns_per_hour
 from pareto_monoped.actuator.bearings import RatedBearing, rated_bearing
@@ -22,9 +21,8 @@ from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.needles import LIFE_EXPONENT, choices_mm, needle_rows, roller_bearing
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.errors import SimulationError, complaint
-from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.geometry.shapes import Floats, Numbers
 
-Floats = NDArray[np.float64]
 GROOVE = 0.52
 """Groove radius over ball diameter, as ISO 281 and ISO 76 assume for deep groove ball bearings."""
 _YOUNGS_MODULUS_MPA, _POISSON_RATIO = 207_000.0, 0.3  # bearing steel, as in ISO/TS 16281 and ISO 76
@@ -81,7 +79,7 @@ class _Row:
         self.stiffness = contact_stiffness(bearing)
 
     def forces(self, shift: Floats, tilt: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Force, force's radial and axial share, and distance of the groove centres of each ball, shape (n, balls)."""
+        """Return force, its radial and axial share, and distance of groove centres of each ball, shape (n, balls)."""
         radial = self.radial_mm + shift[:, None] * self.cosine
         axial = self.arm_mm * tilt[:, None] * self.cosine
         distance = np.hypot(radial, axial)
@@ -93,9 +91,6 @@ class _Row:
 
         Newton's method on the elastic energy less the work of the loads, which is convex. Steps are halved until the
         energy falls.
-
-        Raises:
-            SimulationError: no balance was found.
         """
         load = force + moment / self.arm_mm
         press = (_STRIBECK * load / (self.balls * self.stiffness)) ** (2.0 / 3.0)
@@ -168,7 +163,7 @@ def contact_stiffness(bearing: RatedBearing) -> float:
 
 
 def _equivalent_n(bearing: RatedBearing, balls: Floats) -> Floats:
-    """Dynamic equivalent load by the rating life of both rings (ISO/TS 16281, clause 4: the inner ring turns)."""
+    """Return the equivalent load by the rating life of both rings (ISO/TS 16281, clause 4: the inner turns)."""
     gamma = bearing.ball_diameter_mm / bearing.pitch_diameter_mm
     # Both grooves have the same radius, so that their ratio in the standard's bracket is 1.
     bracket = (1.044 * ((1.0 - gamma) / (1.0 + gamma)) ** 1.72) ** (10.0 / 3.0)
@@ -303,7 +298,7 @@ def _life_h(turns: Numbers, force_n: Numbers, dynamic_rating_n: Numbers, setting
 
 
 def planet_margin(gears: GearSet, width_mm: Numbers, motor: Motor, settings: ActuatorSettings) -> Numbers:
-    """Least of life, static safeties or pv over what the settings ask for, less 1; negative where one is too little."""
+    """Return the least of life, static safeties or pv over what the settings ask for, less 1."""
     if settings.planet_bearing == "needles":
         force = planet_force_n(gears, gears.ratio * motor.peak_torque_n_m, settings)
         return _needle_margin(planet_turns(gears), force, width_mm, settings)
@@ -334,7 +329,7 @@ def bush_pv_limit(settings: ActuatorSettings) -> float:
 
 
 def planet_width_mm(gears: GearSet, motor: Motor, settings: ActuatorSettings) -> Numbers:
-    """Least face width at which the planets' bearings hold; 0 where none is wide enough, which a rule then says."""
+    """Return the least face width at which the planets' bearings hold; 0 where none does, which a rule says."""
     if "planet_bearing" in settings.constraints_off:
         return np.zeros(np.shape(gears.sun_teeth))[()]
     if settings.planet_bearing == "bushes":

@@ -63,7 +63,7 @@ def bearing_loss(bearings: Sequence[BearingService], peak_torque_n_m: float) -> 
 
 
 def churning_loss(bearings: Sequence[BearingService], peak_torque_n_m: float, service: ServiceData) -> float:
-    """Power that the bearings' lubricant takes at the mean speed, over that at the peak torque (Palmgren)."""
+    """Return the lubricant's power in the bearings at the mean speed over that at the peak torque (Palmgren)."""
     if not service.lubricant_viscosity_mm2_per_s:
         return 0.0
     drag_n_m = 0.0

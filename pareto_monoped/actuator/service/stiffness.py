@@ -131,7 +131,7 @@ def _carrier_compliance(actuator: Actuator, at: Layout, aluminium: ElasticMateri
 
 
 def _tube_softness(prism: Prism) -> float:
-    """Length over polar second moment of a turned slab, in 1/mm3; its bolt holes and pin holes are left out."""
+    """Return length over polar second moment of a turned slab, in 1/mm3, without its bolt and pin holes."""
     assert isinstance(prism.outline, Circle)
     bores = [float(hole.radius_mm) for hole in prism.holes if isinstance(hole, Circle)]
     inner = max(bores, default=0.0)

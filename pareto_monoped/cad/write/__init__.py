@@ -1,1 +1,3 @@
 """One module per file format, and the folder that they are written to."""
+
+__all__ = ["folder"]
