@@ -37,12 +37,12 @@ def examine(product, arrays, part_files, other_files):
     """
     known = {}
 
-    def kept(module):
-        look = module.check
+    def kept(module, name):
+        look = getattr(module, name)
 
         def check(*arguments):
             reads = [item for argument in arguments for item in _reads(argument)]
-            key = (module.__name__, *map(id, reads), free_motion.hip_stop, free_motion.knee_stop)
+            key = (module.__name__, name, *map(id, reads), free_motion.hip_stop, free_motion.knee_stop)
             if key not in known:
                 known[key] = (look(*arguments), reads)  # an id is unique only while its object is kept
             return known[key][0]
@@ -51,8 +51,15 @@ def examine(product, arrays, part_files, other_files):
 
     def run(product=product, arrays=arrays, part_files=part_files, other_files=other_files):
         with pytest.MonkeyPatch.context() as patch:
-            for module in (overlap, free_motion, free_motion, screws, retention, watertight):
-                patch.setattr(module, "check", kept(module))
+            for module, *names in (
+                (overlap, "check"),
+                (free_motion, "check_gear_mesh", "check_free_motion"),
+                (screws, "check_bolts", "check_seats"),
+                (retention, "check"),
+                (watertight, "check"),
+            ):
+                for name in names:
+                    patch.setattr(module, name, kept(module, name))
             checks = run_checks(product, arrays, part_files=part_files, other_files=other_files)
         return {check.name: check for check in checks}
 
