@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from functools import cache
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.ratiomap import JointMaps, motor_label
-from pareto_monoped.definition.given import as_list, as_plain, as_table, is_series
+from pareto_monoped.definition.given import as_list, as_table, is_series
 from pareto_monoped.definition.variables import MOTOR_KEYS
 from pareto_monoped.design import DEFAULTS, NAMES, PAPER_NAMES, Design, complete
 from pareto_monoped.errors import CalibrationError, DesignError, InputError, StudyError, complaint
@@ -31,8 +32,6 @@ from pareto_monoped.jump.calibration import (
 from pareto_monoped.jump.calibration import load_calibration as shipped_calibration
 from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION
 from pareto_monoped.measures import GOAL_NAMES, is_own
-from pareto_monoped.storage.columns import COLUMNS
-from pareto_monoped.study.own_functions import OwnFunction, functions_of, own_name
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -124,8 +123,14 @@ def table_of(what: str, given: Any) -> dict[str, float]:
 
 
 _FORMS = "a Design, a list of them, a mapping or data frame of variables, or an array of numbers"
-_COLUMNS = tuple(dict.fromkeys((*NAMES, *(column.name for column in COLUMNS), *GOAL_NAMES)))
-"""Columns that frames of designs may have: those of stored trials."""
+
+
+@cache
+def _known() -> tuple[str, ...]:
+    """Return the names of columns that frames of designs may have: those of stored trials."""
+    from pareto_monoped.storage.columns import COLUMNS
+
+    return tuple(dict.fromkeys((*NAMES, *(column.name for column in COLUMNS), *GOAL_NAMES)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -224,7 +229,7 @@ def _of_designs(designs: Sequence[Design]) -> NDArray[np.float64]:
 def _of_columns(table: "Mapping[str, Any] | DataFrame") -> Given:
     """Designs from one column per variable, or one value; other columns may be those of stored trials."""
     for name in table:
-        if name not in _COLUMNS and not is_own(name):
+        if name not in _known() and not is_own(name):
             raise DesignError(f"designs: {name!r} is neither a variable nor a column of stored trials; {_near(name)}")
     if missing := [name for name in PAPER_NAMES if name not in table]:
         raise DesignError(f"designs: lack {', '.join(missing)}; add them")
@@ -240,7 +245,7 @@ def _of_columns(table: "Mapping[str, Any] | DataFrame") -> Given:
 
 def _near(name: object) -> str:
     """What to do about an unknown column."""
-    for known in (NAMES, _COLUMNS):
+    for known in (NAMES, _known()):
         if near := difflib.get_close_matches(str(name), known, n=1):
             return f"did you mean {near[0]!r}?"
     return "correct the name, or drop it"
@@ -260,68 +265,6 @@ def _text(motor: Any) -> str:
 def _label(motor: str, hip: str, knee: str) -> str:
     """The motors of one row as ``JointMaps.label`` has them."""
     return motor_label(hip or motor or "unknown", knee or motor or "unknown") if hip or knee else motor
-
-
-Goal = str | OwnFunction
-"""A measure by its name, or an own function."""
-Limits = Mapping[Any, Any] | OwnFunction | Sequence[Any]
-
-
-def objective_names(objectives: Sequence[Goal]) -> tuple[list[str], dict[str, OwnFunction]]:
-    """Names of objectives, and the own functions among them.
-
-    Raises:
-        StudyError: no list, or something in it that is neither a name nor a function.
-    """
-    several = as_list(objectives)
-    if isinstance(several, str | Mapping) or not isinstance(several, Sequence):
-        allowed = "a list of two or three measures or functions, such as ['height_m', 'energy_j']"
-        raise StudyError(complaint("objectives", objectives, allowed, "give one"))
-    functions = functions_of([one for one in several if not isinstance(one, str)])
-    return [one if isinstance(one, str) else own_name(one) for one in several], functions
-
-
-def limits_of(constraints: Limits) -> tuple[dict[str, Any], dict[str, OwnFunction]]:
-    """Limits by their stored keys, such as "max_mass_kg", and the own functions that they are of.
-
-    Args:
-        constraints: a mapping of measures, or functions, to their limits; or a function, which holds at <= 0; or a list
-            of such mappings and functions.
-
-    Raises:
-        StudyError: something else, or a limit that is given twice, in whatever spelling.
-    """
-    given = as_table(constraints)
-    parts = [given] if isinstance(given, Mapping) or callable(given) else given
-    if isinstance(parts, str) or not isinstance(parts, Sequence):
-        allowed = "limits such as {'mass_kg': {'max': 4.0}}, or a list of these and of functions that hold at <= 0"
-        raise StudyError(complaint("constraints", constraints, allowed, "give one of these"))
-    flat: dict[str, Any] = {}
-    functions: list[object] = []
-    for part in parts:
-        table = part if isinstance(part, Mapping) else {part: {"max": 0.0}} if callable(part) else None
-        if table is None:
-            allowed = "limits such as {'mass_kg': {'max': 4.0}}, or a function that holds at <= 0"
-            raise StudyError(complaint("constraint", part, allowed, "give one of these"))
-        functions += [key for key in table if not isinstance(key, str)]
-        for key, limits in table.items():
-            name = key if isinstance(key, str) else own_name(key)
-            new = as_plain(_flattened(name, limits))
-            if twice := [stored for stored in new if stored in flat]:
-                side, _, measured = twice[0].partition("_")
-                raise StudyError(f"constraints: the {side} of {measured} is given twice; drop one")
-            flat |= new
-    return flat, functions_of(functions)
-
-
-def _flattened(name: str, limits: Any) -> dict[str, Any]:
-    """The limits of one measure in their stored form."""
-    if not isinstance(limits, Mapping):
-        return {name: limits}
-    if not limits or not set(limits) <= {"min", "max"}:
-        allowed = "a table with 'min', 'max' or both, such as {'max': 4.0}"
-        raise StudyError(complaint(f"constraints: limits of {name}", dict(limits), allowed, "correct it"))
-    return {f"{side}_{name}": value for side, value in limits.items()}
 
 
 def own_calibration(given: Calibration) -> Calibration:

@@ -11,12 +11,8 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import ArrayLike
 
 from pareto_monoped.api.given import (
-    Goal,
-    Limits,
     called_after,
     executor_of,
-    limits_of,
-    objective_names,
     own_calibration,
     seed_of,
     stored_calibration_name,
@@ -24,14 +20,14 @@ from pareto_monoped.api.given import (
 )
 from pareto_monoped.api.jumps import AnyCalibration, StrPath
 from pareto_monoped.api.studies import Picked, StoredStudy, as_path, as_place, load_study
-from pareto_monoped.definition.given import as_list, count_of
+from pareto_monoped.definition.given import as_list, as_plain, as_table, count_of
 from pareto_monoped.definition.study import Study, budgeted, study_from_dict
 from pareto_monoped.errors import InputError, StudyError, complaint
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.calibration_defaults import rules_for
 from pareto_monoped.search.own_algorithm import own_algorithm_name
 from pareto_monoped.storage.place import StudyPlace
-from pareto_monoped.study.own_functions import Own, OwnFunction, functions_of, listed
+from pareto_monoped.study.own_functions import Own, OwnFunction, functions_of, listed, own_name
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -41,6 +37,67 @@ if TYPE_CHECKING:
 
 _STUDY = "a Study, or the path of a study file"
 _CALIBRATION = "a Calibration, the name of a shipped one, or the path of a TOML file"
+
+Goal = str | OwnFunction
+"""A measure by its name, or an own function."""
+Limits = Mapping[Any, Any] | OwnFunction | Sequence[Any]
+
+
+def objective_names(objectives: Sequence[Goal]) -> tuple[list[str], dict[str, OwnFunction]]:
+    """Names of objectives, and the own functions among them.
+
+    Raises:
+        StudyError: no list, or something in it that is neither a name nor a function.
+    """
+    several = as_list(objectives)
+    if isinstance(several, str | Mapping) or not isinstance(several, Sequence):
+        allowed = "a list of two or three measures or functions, such as ['height_m', 'energy_j']"
+        raise StudyError(complaint("objectives", objectives, allowed, "give one"))
+    functions = functions_of([one for one in several if not isinstance(one, str)])
+    return [one if isinstance(one, str) else own_name(one) for one in several], functions
+
+
+def limits_of(constraints: Limits) -> tuple[dict[str, Any], dict[str, OwnFunction]]:
+    """Limits by their stored keys, such as "max_mass_kg", and the own functions that they are of.
+
+    Args:
+        constraints: a mapping of measures, or functions, to their limits; or a function, which holds at <= 0; or a list
+            of such mappings and functions.
+
+    Raises:
+        StudyError: something else, or a limit that is given twice, in whatever spelling.
+    """
+    given = as_table(constraints)
+    parts = [given] if isinstance(given, Mapping) or callable(given) else given
+    if isinstance(parts, str) or not isinstance(parts, Sequence):
+        allowed = "limits such as {'mass_kg': {'max': 4.0}}, or a list of these and of functions that hold at <= 0"
+        raise StudyError(complaint("constraints", constraints, allowed, "give one of these"))
+    flat: dict[str, Any] = {}
+    functions: list[object] = []
+    for part in parts:
+        table = part if isinstance(part, Mapping) else {part: {"max": 0.0}} if callable(part) else None
+        if table is None:
+            allowed = "limits such as {'mass_kg': {'max': 4.0}}, or a function that holds at <= 0"
+            raise StudyError(complaint("constraint", part, allowed, "give one of these"))
+        functions += [key for key in table if not isinstance(key, str)]
+        for key, limits in table.items():
+            name = key if isinstance(key, str) else own_name(key)
+            new = as_plain(_flattened(name, limits))
+            if twice := [stored for stored in new if stored in flat]:
+                side, _, measured = twice[0].partition("_")
+                raise StudyError(f"constraints: the {side} of {measured} is given twice; drop one")
+            flat |= new
+    return flat, functions_of(functions)
+
+
+def _flattened(name: str, limits: Any) -> dict[str, Any]:
+    """The limits of one measure in their stored form."""
+    if not isinstance(limits, Mapping):
+        return {name: limits}
+    if not limits or not set(limits) <= {"min", "max"}:
+        allowed = "a table with 'min', 'max' or both, such as {'max': 4.0}"
+        raise StudyError(complaint(f"constraints: limits of {name}", dict(limits), allowed, "correct it"))
+    return {f"{side}_{name}": value for side, value in limits.items()}
 
 
 def run(

@@ -1,10 +1,11 @@
 """Stored studies: trials, checkpoints and results in SQLite files or on a PostgreSQL server, and their integrity.
 
-Order of imports, lowest first: columns, connection; failures, file; server; place; base, kept_front, meta, seals;
-extra_rows, lock, optuna_tables, reader; front_reader; status, store; optuna_check.
+Order of imports, lowest first: address, columns, connection; base, failures; lock, server; file; place; kept_front,
+meta, seals; extra_rows, optuna_tables, reader; front_reader; status, store; optuna_check.
 """
 
 __all__ = [
+    "address",
     "base",
     "columns",
     "connection",
