@@ -40,8 +40,7 @@ from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.peers import cluster
 from pareto_monoped.jump.shared import jumps_of, setup_text
 from pareto_monoped.pareto.front import GrowingFront, front_mask
-from pareto_monoped.pareto.indicators import hypervolume, reference_point
-from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, hypervolume, reference_point
 from pareto_monoped.search.registry import make_algorithm
 from pareto_monoped.storage.columns import Generation
 from pareto_monoped.storage.reader import read_study

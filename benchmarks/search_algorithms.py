@@ -33,8 +33,7 @@ from pareto_monoped.compute.threads import cores
 from pareto_monoped.definition.study import Study, study_from_dict
 from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 from pareto_monoped.pareto.front import front_mask
-from pareto_monoped.pareto.indicators import ReferencePoint, hypervolume
-from pareto_monoped.pareto.objectives import Objectives
+from pareto_monoped.pareto.objectives import Objectives, ReferencePoint, hypervolume
 from pareto_monoped.search.algorithm import Algorithm
 from pareto_monoped.search.registry import make_algorithm
 from pareto_monoped.search.scoring import judge, scores

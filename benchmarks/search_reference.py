@@ -27,7 +27,7 @@ from pareto_monoped.definition.study import Study, load_study, study_from_dict
 from pareto_monoped.design import NAMES
 from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 from pareto_monoped.pareto.front import front_mask
-from pareto_monoped.pareto.indicators import hypervolume
+from pareto_monoped.pareto.objectives import hypervolume
 from pareto_monoped.search.algorithm import Scores
 from pareto_monoped.search.registry import make_algorithm
 from pareto_monoped.search.scoring import judge, scores

@@ -1,4 +1,4 @@
-"""The design variables, their bounds, and the designs of the paper's Table I.
+"""The design variables, their bounds, the designs of the paper's Table I, and the names of gearbox rules.
 
 Order and symbols of the first seven are those of the paper (section III-B): Y = [l1, l2, g_k, g_h, K, C, T]. The
 others are optional: each has a default that leaves the paper's controller as it is, and a study may free them.
@@ -363,3 +363,14 @@ HEADLINE_HEIGHT_M = PAPER_CASES["C"].height_m
 """Height at which the least energy of a front is quoted, 0.8 m: that of the paper's best design, Case C."""
 GRAVITY_M_PER_S2 = 9.81
 """The default of MuJoCo, also used for the paper's m g."""
+
+
+ConstraintName = Literal[
+    "meshing", "no_interference", "teeth_min", "tip_thickness", "gearbox_diameter", "ring_root", "root_fillet",
+    "sun_rim", "planet_rim", "ring_rim", "ring_interference", "contact_ratio", "within_stator", "bearing",
+    "bearing_room", "face_width", "flank_strength", "root_strength", "overload_strength", "output_bearing",
+    "planet_bearing",
+]  # fmt: skip
+"""Names of the rules in ``rules.CONSTRAINTS``. They stand here because the rules read the settings, which check names,
+and because the command line lists them without any of that."""
+CONSTRAINT_NAMES: tuple[ConstraintName, ...] = get_args(ConstraintName)

@@ -127,10 +127,7 @@ def _record(folder: Path) -> dict[str, Any]:
     """A record of an export that was never made."""
     from pareto_monoped.cad.export import simulated_jumps
     from pareto_monoped.cad.jobs import case_job
-    from pareto_monoped.cad.records import (
-        expected_record,
-        record_job,  # noqa: F401
-    )
+    from pareto_monoped.cad.records import expected_record
 
     job = case_job("C", folder=folder / "export", formats=["urdf"])
     record = expected_record(job)

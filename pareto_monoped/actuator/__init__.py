@@ -1,16 +1,15 @@
 """Stage 1: from a motor to the lightest actuator for every gear ratio.
 
-Order of imports, lowest first: assumptions, bearings, constraint_names, rating.geometry, windings; motor, rating.load,
-settings; gearset, motors, needles; rating.capacity, webs; layout, rating.stage; features, rating.sheet, rating.strike,
-service.loads; external_housing, planet_bearings, rating.build; front, rating.width; external, internal, rules;
-actuator; ratiomap, service.bearing_life, service.stiffness; judge, service.sheet; explain, search.
+Order of imports, lowest first: assumptions, bearings, rating.geometry, windings; motor, rating.load, settings; gearset,
+motors, needles; rating.capacity, webs; layout, rating.stage; features, rating.sheet, rating.strike, service.loads;
+external_housing, planet_bearings, rating.build; front, rating.width; external, internal, rules; actuator; ratiomap,
+service.bearing_life, service.stiffness; judge, service.sheet; explain, search.
 """
 
 __all__ = [
     "actuator",
     "assumptions",
     "bearings",
-    "constraint_names",
     "explain",
     "gearset",
     "layout",

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from pareto_monoped.actuator.actuator import Actuator
-from pareto_monoped.actuator.constraint_names import ConstraintName
 from pareto_monoped.actuator.layout import Family
 from pareto_monoped.actuator.motor import PEAK_TO_CONTINUOUS, Motor
 from pareto_monoped.actuator.ratiomap import ActuatorMap, Candidate, MapEntry, cures
 from pareto_monoped.actuator.rules import CONSTRAINTS
 from pareto_monoped.actuator.service.bearing_life import BearingService
 from pareto_monoped.actuator.service.sheet import ServiceSheet
+from pareto_monoped.design import ConstraintName
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Role
 

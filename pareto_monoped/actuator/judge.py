@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import actuator_mass_kg
-from pareto_monoped.actuator.constraint_names import ConstraintName
 from pareto_monoped.actuator.gearset import GearSet, joined
 from pareto_monoped.actuator.layout import Family, Layout, layout
 from pareto_monoped.actuator.motor import Motor
@@ -29,6 +28,7 @@ from pareto_monoped.actuator.rating.width import (
 from pareto_monoped.actuator.ratiomap import RATIO_HIGH, RATIO_LOW
 from pareto_monoped.actuator.rules import CONSTRAINTS, CandidateSets, active_rules, violations
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.design import ConstraintName
 from pareto_monoped.geometry.shapes import Floats, Numbers
 
 _BEYOND_MM = 12.0

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.actuator import Actuator
-from pareto_monoped.actuator.constraint_names import ConstraintName
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import Family
 from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.rating.width import LOAD_RULES
 from pareto_monoped.actuator.rules import CONSTRAINTS
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.design import ConstraintName
 from pareto_monoped.errors import DesignError, MotorError
 from pareto_monoped.geometry.shapes import Floats
 

@@ -7,7 +7,6 @@ from functools import reduce
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.actuator.constraint_names import ConstraintName
 from pareto_monoped.actuator.gearset import GearSet, contact_ratios
 from pareto_monoped.actuator.layout import END_BEARING_BORE_MM, Family, Layout, radial_room_mm
 from pareto_monoped.actuator.motor import Motor
@@ -15,7 +14,7 @@ from pareto_monoped.actuator.rating.build import build_stage, face_limit_mm
 from pareto_monoped.actuator.rating.width import strength_margins
 from pareto_monoped.actuator.service.loads import output_margin, planet_margin
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.design import RULE_SETS, RuleSet
+from pareto_monoped.design import RULE_SETS, ConstraintName, RuleSet
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, PRESSURE_ANGLE_RAD, fillet_room_rad
 from pareto_monoped.geometry.shapes import Numbers
 

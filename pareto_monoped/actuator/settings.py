@@ -18,9 +18,8 @@ from pareto_monoped.actuator.assumptions import (
     chosen_steels,
     default_service,
 )
-from pareto_monoped.actuator.constraint_names import CONSTRAINT_NAMES
 from pareto_monoped.config import Positive, Strict, checked, read_shipped
-from pareto_monoped.design import DEFAULT_RULES, RULE_SETS, RuleSet
+from pareto_monoped.design import CONSTRAINT_NAMES, DEFAULT_RULES, RULE_SETS, RuleSet
 from pareto_monoped.errors import InputError, unknown_name
 from pareto_monoped.geometry.gears import ExternalGear
 from pareto_monoped.geometry.making import GENERAL_SERIES, RATED_SERIES

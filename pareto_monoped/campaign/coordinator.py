@@ -15,7 +15,7 @@ from pareto_monoped.compute.processes import GRACE_S, Processes
 from pareto_monoped.compute.threads import cores as cores_here
 from pareto_monoped.errors import ParetoMonopedError
 from pareto_monoped.storage.lock import holder
-from pareto_monoped.study.interrupt import Interrupt
+from pareto_monoped.study.session import Interrupt
 
 MOST_DEATHS = 2
 """A study whose process was killed so often is given up: our own choice. Once may be chance, such as a full memory."""

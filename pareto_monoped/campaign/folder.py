@@ -12,7 +12,7 @@ from pareto_monoped.definition.provenance import decisive, differences
 from pareto_monoped.definition.study import Study, study_from_dict
 from pareto_monoped.errors import DatabaseError, OutputError, StudyError
 from pareto_monoped.files import unwritable
-from pareto_monoped.pareto.indicators import hypervolume
+from pareto_monoped.pareto.objectives import hypervolume
 from pareto_monoped.storage.lock import holder, locked
 from pareto_monoped.storage.meta import StudyMeta, meta_of_rows
 from pareto_monoped.storage.place import storage_of

@@ -31,7 +31,7 @@ class _WithRules(click.Command):
     """Its help ends with the names that ``--without`` takes; they are read only then."""
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        from pareto_monoped.actuator.constraint_names import CONSTRAINT_NAMES
+        from pareto_monoped.design import CONSTRAINT_NAMES
 
         formatter.write_paragraph()
         formatter.write_text(f"Constraints of --without: {', '.join(CONSTRAINT_NAMES)}.")

@@ -155,7 +155,7 @@ def _studies() -> Iterable[str]:
 
 
 def _constraints() -> Iterable[str]:
-    from pareto_monoped.actuator.constraint_names import CONSTRAINT_NAMES
+    from pareto_monoped.design import CONSTRAINT_NAMES
 
     return CONSTRAINT_NAMES
 

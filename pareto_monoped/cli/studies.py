@@ -181,8 +181,7 @@ def _other_limits(facts: dict[str, Any]) -> dict[str, str]:
 
 
 def _corner(facts: dict[str, Any]) -> str:
-    from pareto_monoped.pareto.indicators import ReferencePoint
-    from pareto_monoped.pareto.objectives import Objectives
+    from pareto_monoped.pareto.objectives import Objectives, ReferencePoint
 
     values: dict[str, float] = facts["reference_point"]
     return ReferencePoint(objectives=Objectives(names=tuple(values)), values=tuple(values.values())).text()

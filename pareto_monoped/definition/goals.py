@@ -11,8 +11,14 @@ from numpy.typing import NDArray
 from pareto_monoped.design import BASE_START_HEIGHT_M
 from pareto_monoped.errors import StudyError, complaint, unknown_name
 from pareto_monoped.measures import GOAL_NAMES, STATISTICS, is_goal, is_own, is_robust, measure, near_measures
-from pareto_monoped.pareto.indicators import ReferencePoint, reference_point
-from pareto_monoped.pareto.objectives import FEWEST, HEIGHT_AND_ENERGY, MOST, Objectives
+from pareto_monoped.pareto.objectives import (
+    FEWEST,
+    HEIGHT_AND_ENERGY,
+    MOST,
+    Objectives,
+    ReferencePoint,
+    reference_point,
+)
 from pareto_monoped.strength.groups import REQUIRED_MEASURES
 from pareto_monoped.uncertainty.settings import MOST_FAILED
 

@@ -42,8 +42,7 @@ from pareto_monoped.design import DEFAULTS, NAMES, RuleSet
 from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION, rules_for, strength_for
 from pareto_monoped.measures import SHARE_MEASURES, is_own, is_robust
-from pareto_monoped.pareto.indicators import ReferencePoint
-from pareto_monoped.pareto.objectives import Objectives
+from pareto_monoped.pareto.objectives import Objectives, ReferencePoint
 from pareto_monoped.strength.groups import GROUP_MEASURES
 from pareto_monoped.uncertainty.settings import Sampling, sampling_of
 

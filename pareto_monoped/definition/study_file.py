@@ -26,8 +26,7 @@ from pareto_monoped.definition.goals import flattened
 from pareto_monoped.definition.variables import MOTOR_KEYS, number_of
 from pareto_monoped.design import NAMES, RuleSet
 from pareto_monoped.errors import StudyError, unknown_name
-from pareto_monoped.pareto.indicators import ReferencePoint
-from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, ReferencePoint
 
 START = "case_c"
 """The study that a newcomer begins with: all seven variables of the paper, its best design."""

@@ -1,6 +1,6 @@
 """Stage 2: a robot becomes a MuJoCo model, jumps under the paper's controller, and its jump is measured.
 
-Order of imports, lowest first: calibration_defaults, controller, controller_record; calibration, callback; end_stops,
+Order of imports, lowest first: calibration_defaults, controller_record; calibration, controller; callback, end_stops,
 variations; model; population; evaluate, frames; peers, shared, single; balance; audit; screen, table1.
 """
 
@@ -9,7 +9,6 @@ __all__ = [
     "balance",
     "calibration",
     "calibration_defaults",
-    "controller",
     "controller_record",
     "end_stops",
     "evaluate",

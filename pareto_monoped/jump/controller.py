@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.compute.compiled import compiled
 from pareto_monoped.design import GRAVITY_M_PER_S2
+from pareto_monoped.jump.controller_record import TOUCH_M
 
 Floats = NDArray[np.float64]
 
@@ -24,8 +25,6 @@ HIP, KNEE = 0, 1
 RUNNING, FLYING, APEX, NO_LIFT_OFF, SANK, DIVERGED, TIMEOUT = range(7)
 """Values of ``status``; the jump goes on up to and including ``FLYING``."""
 
-TOUCH_M = 1e-9
-"""Clearance that still counts as touching, because of rounding in the start pose."""
 SANK_M = 0.1
 """A base this low has fallen: half its actuators' diameter is 0.05 m."""
 SPEED_LIMIT = 1e4

@@ -6,6 +6,8 @@ from here as it is (``jump.evaluate``). Importing this module does not import nu
 
 import numpy as np
 
+TOUCH_M = 1e-9
+"""Clearance that still counts as touching, because of rounding in the start pose."""
 MOST_DELAY = 8
 """Control periods that a command can be late: 3 ms (bus and driver) at a period of 0.5 ms, and two more."""
 

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.analysis.choices import Choice, choices, two_fronts
 from pareto_monoped.pareto.front import best_at_height
-from pareto_monoped.pareto.indicators import hypervolume
-from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives, hypervolume
 from pareto_monoped.report.packing import number
 from pareto_monoped.report.schema import Comparison
 from pareto_monoped.storage.reader import StudyData

@@ -11,8 +11,7 @@ import cma
 import numpy as np
 
 from pareto_monoped.definition.algorithms import WeightedSettings
-from pareto_monoped.pareto.indicators import ReferencePoint
-from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, ReferencePoint
 from pareto_monoped.search.algorithm import Algorithm, Floats, Proposal, Scores, Space
 
 

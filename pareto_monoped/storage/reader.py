@@ -21,8 +21,7 @@ from pareto_monoped.definition.variables import MOTOR_KEYS, names_of
 from pareto_monoped.design import DEFAULTS, PAPER_MOTOR
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import front_mask
-from pareto_monoped.pareto.indicators import ReferencePoint
-from pareto_monoped.pareto.objectives import Objectives
+from pareto_monoped.pareto.objectives import Objectives, ReferencePoint
 from pareto_monoped.storage.base import undamaged
 from pareto_monoped.storage.columns import COLUMNS, LATER, REQUIRED
 from pareto_monoped.storage.meta import StudyMeta, meta_of_rows, motor_keys

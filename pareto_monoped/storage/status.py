@@ -13,7 +13,7 @@ from pareto_monoped.definition.study import Study, study_from_dict
 from pareto_monoped.design import HEADLINE_HEIGHT_M
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import best_at_height
-from pareto_monoped.pareto.indicators import hypervolume
+from pareto_monoped.pareto.objectives import hypervolume
 from pareto_monoped.storage.connection import Connection
 from pareto_monoped.storage.front_reader import foreign_count
 from pareto_monoped.storage.kept_front import STATES, KeptFront, rows_of

@@ -1,6 +1,6 @@
 """Studies: study file, search algorithms behind one ask-and-tell interface, run loop, storage, resume.
 
-Order of imports, lowest first: interrupt, own_functions, simulator; audits, outside, session; pymoo_problem, run.
+Order of imports, lowest first: own_functions, simulator; audits, outside, session; pymoo_problem, run.
 """
 
-__all__ = ["interrupt", "own_functions", "run", "session", "simulator"]
+__all__ = ["own_functions", "run", "session", "simulator"]

@@ -14,7 +14,7 @@ from pareto_monoped.definition import provenance
 from pareto_monoped.definition.algorithms import WeightedSettings, share_of
 from pareto_monoped.definition.study import Study
 from pareto_monoped.errors import StudyError
-from pareto_monoped.pareto.indicators import hypervolume
+from pareto_monoped.pareto.objectives import hypervolume
 from pareto_monoped.search.registry import make_algorithm
 from pareto_monoped.storage.base import BY_NAME, StudyLock
 from pareto_monoped.storage.front_reader import foreign_note
@@ -23,9 +23,8 @@ from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.storage.store import Store, create_database
 from pareto_monoped.study.audits import audit_front
-from pareto_monoped.study.interrupt import Interrupt
 from pareto_monoped.study.own_functions import NOTHING, Own, refuse_other_functions, require_functions, with_functions
-from pareto_monoped.study.session import Progress, Session
+from pareto_monoped.study.session import Interrupt, Progress, Session
 from pareto_monoped.study.simulator import (
     Simulator,
     continued_simulator,

@@ -1,11 +1,17 @@
-"""Run one session of a study: ask, simulate, tell, store. Only this module knows algorithm, simulator and storage."""
+"""Run one session of a study: ask, simulate, tell, store. Only this module knows algorithm, simulator and storage.
 
+Ctrl-C in two steps: the first asks for an orderly end, the second ends at once; SIGTERM and SIGHUP likewise.
+"""
+
+import signal
+import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from itertools import pairwise
+from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -15,7 +21,7 @@ from pareto_monoped.definition.study import Study
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import AtHeight, GrowingFront, best_at_height
-from pareto_monoped.pareto.indicators import hypervolume
+from pareto_monoped.pareto.objectives import hypervolume
 from pareto_monoped.search.algorithm import Algorithm, Scores
 from pareto_monoped.search.registry import make_algorithm
 from pareto_monoped.search.scoring import judge, missed, scores, values_of
@@ -23,8 +29,39 @@ from pareto_monoped.search.space import Coordinates, Motors, plain_coordinates
 from pareto_monoped.storage.columns import Generation
 from pareto_monoped.storage.reader import StudyData
 from pareto_monoped.storage.store import Store
-from pareto_monoped.study.interrupt import Interrupt
 from pareto_monoped.study.simulator import Evaluate
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class Interrupt:
+    """A context that catches the first SIGINT, SIGTERM or SIGHUP and sets ``asked``.
+
+    Outside the main thread, where Python allows no signal handlers, it does nothing.
+    """
+
+    def __init__(self, notify: Callable[[str], None]) -> None:
+        self.asked = False
+        self._notify = notify
+        self._main = threading.current_thread() is threading.main_thread()
+
+    def __enter__(self) -> "Interrupt":
+        if self._main:
+            # What began with SIGHUP ignored (nohup) shall outlive its terminal.
+            numbers = [n for n in _SIGNALS if n != signal.SIGHUP or signal.getsignal(n) is not signal.SIG_IGN]
+            self._before = {number: signal.signal(number, self._first) for number in numbers}
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._main:
+            for number, handler in self._before.items():
+                signal.signal(number, handler)
+
+    def _first(self, number: int, frame: FrameType | None) -> None:
+        self.asked = True
+        for each in self._before:
+            signal.signal(each, signal.default_int_handler)
+        self._notify("interrupted: ending after this generation; press Ctrl-C again to end at once")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

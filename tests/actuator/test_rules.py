@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from pareto_monoped.actuator.constraint_names import CONSTRAINT_NAMES
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.layout import layout
 from pareto_monoped.actuator.motors import load_motor
 from pareto_monoped.actuator.rating.width import lewis_width_mm
 from pareto_monoped.actuator.rules import CONSTRAINTS, CandidateSets, violations
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.design import CONSTRAINT_NAMES
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear, fillet_room_rad
 
 MOTOR = load_motor("VT8020")

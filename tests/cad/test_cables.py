@@ -15,7 +15,7 @@ from pareto_monoped.cad.cables import ENCODER_CABLE_M, cables, rounded, rounded_
 from pareto_monoped.cad.product import Listed, Pose, body_frames
 from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.cad.write.assembly_pack import _cables
-from pareto_monoped.cad.write.hardware import cables_csv, hardware
+from pareto_monoped.cad.write.tables import cables_csv, hardware
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.leg.actuator_fit import peak_current_a
 from pareto_monoped.robot.build import build_robot

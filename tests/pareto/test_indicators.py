@@ -10,8 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pareto_monoped.measures import measure
-from pareto_monoped.pareto.indicators import hypervolume, reference_point
-from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives, hypervolume, reference_point
 
 REFERENCE = reference_point(HEIGHT_AND_ENERGY, {"height_m": 0.5, "energy_j": 10.0})
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.pareto.indicators import hypervolume, reference_point
+from pareto_monoped.pareto.objectives import hypervolume, reference_point
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.comparison import _held, _surface, compare, group_of, least_second, seed_groups
 from pareto_monoped.report.page import build

@@ -7,8 +7,7 @@ import pytest
 
 from pareto_monoped.definition.algorithms import ALGORITHMS
 from pareto_monoped.definition.study import study_from_dict
-from pareto_monoped.pareto.indicators import hypervolume, reference_point
-from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives, hypervolume, reference_point
 from pareto_monoped.search.algorithm import Scores
 from pareto_monoped.search.registry import make_algorithm
 from pareto_monoped.search.weighted import weighted_cost

@@ -3,7 +3,7 @@ import threading
 
 import pytest
 
-from pareto_monoped.study.interrupt import Interrupt
+from pareto_monoped.study.session import Interrupt
 
 
 def test_the_first_asks_and_the_second_ends_at_once():

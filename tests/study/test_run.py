@@ -21,8 +21,7 @@ from pareto_monoped.errors import DatabaseError, StudyError
 from pareto_monoped.jump.screen import CLEAR
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.pareto.front import front_mask
-from pareto_monoped.pareto.indicators import hypervolume
-from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, hypervolume
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.status import status
 from pareto_monoped.storage.store import Store

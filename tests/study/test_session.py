@@ -5,8 +5,7 @@ import pytest
 
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.store import Store
-from pareto_monoped.study.interrupt import Interrupt
-from pareto_monoped.study.session import Session
+from pareto_monoped.study.session import Interrupt, Session
 from tests.study.support import made_database, made_evaluations, made_study
 
 RANDOM = {"name": "random", "population": 10}

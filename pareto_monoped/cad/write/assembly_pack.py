@@ -17,7 +17,7 @@ from pareto_monoped.cad.shape.meshes import Mesh, mesh_from
 from pareto_monoped.cad.shape.outlines import all_polygons
 from pareto_monoped.cad.steps import Addition, Step, steps_of, stuck, take_apart, titled
 from pareto_monoped.cad.write import meshes
-from pareto_monoped.cad.write.hardware import cables_csv, hardware, items, tightening
+from pareto_monoped.cad.write.tables import cables_csv, hardware, items, tightening
 from pareto_monoped.errors import CheckError
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import FASTENERS, JointKind, Role

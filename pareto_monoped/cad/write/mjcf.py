@@ -71,7 +71,7 @@ def _add_collider(body: ET.Element, collider: Collider) -> None:
 
 def jump_record(arrays: RobotArrays, design: Design, calibration: Calibration) -> str:
     """Return the content of ``jump.json``."""
-    from pareto_monoped.jump.controller import TOUCH_M
+    from pareto_monoped.jump.controller_record import TOUCH_M
 
     control = columns(design.as_array()[None], CONTROL)
     record, jump = first_records(arrays, control, calibration)[0], evaluate_robots(arrays, control, calibration)
