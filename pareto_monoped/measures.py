@@ -167,8 +167,8 @@ class JumpMeasures:
     saturation_knee: Annotated[Floats, _less("1", 1, "time at the torque limit, knee",
         "share of the controlled time that the knee spends at a torque limit", shown=_PERCENT, reference=1.0,
         short="sat. knee")]
-    efficiency: Annotated[Floats, _more("1", 1, f"efficiency, {_EFFICIENCY}", _EFFICIENCY, shown=_PERCENT,
-        reference=0.0, short="effic.", full=f"mechanical efficiency, {_EFFICIENCY}")]
+    efficiency: Annotated[Floats, _more("1", 1, "efficiency, " + _EFFICIENCY, _EFFICIENCY, shown=_PERCENT,
+        reference=0.0, short="effic.", full="mechanical efficiency, " + _EFFICIENCY)]
     electrical_energy_j: Annotated[Floats, _less("J", 2, "energy from the battery",
         "energy taken from the battery: sum over both motors of max(power + heat in the winding, 0) dt, and standby",
         reference=200.0, short="battery", place=30, leading=True, work_share="efficiency from the battery")]
@@ -258,13 +258,13 @@ class AuditMeasures:
         "change of height with a quarter of the step", shown=_MM)]
     quarter_step_energy: Annotated[Floats, _less("1", 2, "energy, step quartered",
         "relative change of energy with a quarter of the step", shown=_PERCENT)]
-    spread_height_m: Annotated[Floats, _less("m", 2, f"height, {_PERTURBED} (90th percentile)",
+    spread_height_m: Annotated[Floats, _less("m", 2, "height, " + _PERTURBED + " (90th percentile)",
         "90th percentile of the change of height over perturbed designs", shown=_MM, place=20)]
-    spread_energy: Annotated[Floats, _less("1", 2, f"energy, {_PERTURBED} (90th percentile)",
+    spread_energy: Annotated[Floats, _less("1", 2, "energy, " + _PERTURBED + " (90th percentile)",
         "90th percentile of the relative change of energy over perturbed designs", shown=_PERCENT, place=30)]
-    worst_height_m: Annotated[Floats, _less("m", 2, f"height, {_PERTURBED} (worst)",
+    worst_height_m: Annotated[Floats, _less("m", 2, "height, " + _PERTURBED + " (worst)",
         "largest change of height over perturbed designs", shown=_MM)]
-    worst_energy: Annotated[Floats, _less("1", 2, f"energy, {_PERTURBED} (worst)",
+    worst_energy: Annotated[Floats, _less("1", 2, "energy, " + _PERTURBED + " (worst)",
         "largest relative change of energy over perturbed designs", shown=_PERCENT)]
     control_period_height_m: Annotated[Floats, _less("m", 2, "height, control period quartered",
         "change of height with a quarter of the control period", shown=_MM, place=60)]
@@ -288,9 +288,9 @@ class ScreenMeasures:
     """
 
     # fmt: off
-    double_step_height_m: Annotated[Floats, _less("m", 2, f"height, {_COARSE}",
+    double_step_height_m: Annotated[Floats, _less("m", 2, "height, " + _COARSE,
         "change of height with twice the step, of a perturbed design", shown=_MM, place=80)]
-    double_step_energy: Annotated[Floats, _less("1", 2, f"energy, {_COARSE}",
+    double_step_energy: Annotated[Floats, _less("1", 2, "energy, " + _COARSE,
         "relative change of energy with twice the step, of a perturbed design", shown=_PERCENT, place=90)]
     double_step_balance_error: Annotated[Floats, _less("1", 2, "energy balance open by, step doubled",
         "what the energy balance of that jump leaves open, as a share of the joint work", shown=_PERCENT, place=100)]

@@ -5,10 +5,14 @@ import inspect
 import sys
 from dataclasses import MISSING, fields, is_dataclass
 from importlib import import_module
+from types import MemberDescriptorType
 from typing import Any
 
 from numpy.typing import ArrayLike
 from sphinx.application import Sphinx
+from sphinx.errors import PycodeError
+from sphinx.ext.autodoc import INSTANCEATTR
+from sphinx.pycode import ModuleAnalyzer
 from sphinx.util.typing import stringify_annotation
 
 import pareto_monoped
@@ -18,6 +22,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
     """Connect the handlers; those of docstrings run before napoleon's, those of types after autodoc's."""
     app.connect("builder-inited", _know_types)
     app.connect("autodoc-process-docstring", _as_fields, priority=400)
+    app.connect("autodoc-skip-member", _skip_fields)
     app.connect("autodoc-process-signature", _shorten_types, priority=900)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
@@ -35,28 +40,37 @@ def _know_types(_: Sphinx) -> None:
                             setattr(module, alias.name, getattr(sys.modules[one.module], alias.name))
 
 
-def _as_fields(_app: Sphinx, _kind: str, _name: str, _object: Any, _options: Any, lines: list[str]) -> None:
-    """Turn the section ``Attributes`` into a list, and ``Returns`` into a field.
+def _as_fields(_app: Sphinx, kind: str, _name: str, value: Any, _options: Any, lines: list[str]) -> None:
+    """Append the fields of a class as a list, and turn the section ``Returns`` into a field.
 
-    Several names may stand before a colon of ``Attributes``. Napoleon would take the words before the first colon of
+    The words of fields stand in comments beside them. Napoleon would take the words before the first colon of
     ``Returns`` for a type; types come from annotations here.
     """
     if "Returns:" in lines:
         lines[lines.index("Returns:")] = ":returns:"
-    if "Attributes:" not in lines:
+    if kind != "class" or not (told := _field_comments(value)):
         return
-    start = lines.index("Attributes:")
-    listed = [":Attributes:"]
-    end = start + 1
-    while end < len(lines) and (not lines[end].strip() or lines[end].startswith("    ")):
-        line = lines[end]
-        if line.startswith("    ") and not line.startswith("     "):
-            names, _, words = line.strip().partition(": ")
-            listed.append("    * " + ", ".join(f"**{name}**" for name in names.split(", ")) + f" -- {words}")
-        else:
-            listed.append("      " + line.strip())
-        end += 1
-    lines[start:end] = [*listed, ""]
+    lines += ["", ":Attributes:"]
+    for name, words in told.items():
+        names, colon, rest = " ".join(words).partition(": ")
+        if not (colon and names.split(", ")[0] == name):
+            names, rest = name, " ".join(words)
+        lines.append("    * " + ", ".join(f"**{one}**" for one in names.split(", ")) + f" -- {rest}")
+    lines.append("")
+
+
+def _field_comments(kind: type) -> dict[str, list[str]]:
+    """Return the comments of a class's fields by name; a comment of several fields stands above the first."""
+    try:
+        found = ModuleAnalyzer.for_module(kind.__module__).find_attr_docs()
+    except PycodeError:
+        return {}
+    return {name: words for (owner, name), words in found.items() if owner == kind.__name__}
+
+
+def _skip_fields(_app: Sphinx, kind: str, name: str, value: Any, skip: bool, _options: Any) -> bool | None:
+    """Leave fields to the list of their class."""
+    return True if kind == "class" and isinstance(value, MemberDescriptorType | type(INSTANCEATTR)) else None
 
 
 def _shorten_types(
