@@ -32,7 +32,7 @@ from pareto_monoped.jump.controller import control
 from pareto_monoped.jump.controller_record import RECORD, RECORD_NUMBERS
 
 _lock = threading.Lock()
-_users = 0
+_users = _quiet_users = 0
 _quiet_before = (True, True)
 
 
@@ -42,22 +42,21 @@ def quiet() -> Iterator[None]:
 
     Also a decorator.
     """
-    global _users, _quiet_before
-    import mujoco
+    global _quiet_users, _quiet_before
 
     with _lock:
-        if _users == 0:
+        if _quiet_users == 0:
             config = mujoco.MjLogConfig.get()
             _quiet_before = (config.logto_console, config.logto_file)
             config.logto_console = config.logto_file = False
             config.set()
-        _users += 1
+        _quiet_users += 1
     try:
         yield
     finally:
         with _lock:
-            _users -= 1
-            if _users == 0:
+            _quiet_users -= 1
+            if _quiet_users == 0:
                 config = mujoco.MjLogConfig.get()
                 config.logto_console, config.logto_file = _quiet_before
                 config.set()
