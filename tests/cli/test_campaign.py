@@ -113,11 +113,11 @@ def test_the_table_at_the_end_says_the_time_that_is_stored(done):
     assert len(times[0]) == 2
 
 
-def test_json_is_a_line_per_generation_and_per_study(done):
-    folder, _ = done
-    ran = command(folder, "--json", "--folder", "other")
+def test_json_is_a_line_per_generation_and_per_study(tmp_path):
+    written(tmp_path, "seeds = [1]", SMALL.replace("40", "20"))
+    ran = command(tmp_path, "--json", "--folder", "other")
     events = [json.loads(line) for line in ran.stdout.splitlines()]
-    of_one = [event for event in events if event.get("study") == "VT8020_seed1"]
+    of_one = [event for event in events if "study" in event]
     stored = [event["evaluations"] for event in of_one if event["event"] == "generation" and event["per_second"]]
     assert stored == [10, 20]
     assert (of_one[-1]["event"], of_one[-1]["state"], of_one[-1]["evaluations"]) == ("study", "finished", 20)
