@@ -86,8 +86,7 @@ _HOMES = {
     "study.outside": ("OptunaObjective",),
     "search.algorithm": ("Scores", "Space"),
     "study.pymoo_problem": ("MonopedProblem",),
-}
-"""Module -> the public names that it defines."""
+}  #: Module -> the public names that it defines.
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
 

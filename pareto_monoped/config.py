@@ -24,12 +24,10 @@ T = TypeVar("T")
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 
-MAX_TOML_BYTES = 1_000_000
-"""Our own choice: a hundred times our longest file."""
+MAX_TOML_BYTES = 1_000_000  #: Our own choice: a hundred times our longest file.
 MAX_JSON_CHARACTERS = 64_000_000
 """Our own choice: the kept front of a study of 200,000 trials, all of them on it, has 1.4 million."""
-MAX_JSON_DEPTH = 64
-"""Levels of lists and objects in each other. Our own choice: ours have less than ten."""
+MAX_JSON_DEPTH = 64  #: Levels of lists and objects in each other. Our own choice: ours have less than ten.
 _TEXTS = re.compile(r'"(?:[^"\\]|\\.)*"')
 _NO_BRACKETS = re.compile(r"[^\[\]{}]+")
 _INNERMOST = re.compile(r"\[\]|\{\}")
@@ -153,8 +151,7 @@ def checked(kind: type[T], values: Mapping[str, Any], *, source: str, error: typ
         raise error(f"{source}: {_line(kind, problem)}") from None
 
 
-_UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
-"""What pydantic calls an unknown key."""
+_UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")  #: What pydantic calls an unknown key.
 
 
 def _line(kind: type, problem: ValidationError) -> str:
@@ -195,8 +192,7 @@ _ALLOWED = {
     "string_too_long": "text of at most {max_length} letters",
     "too_short": "a list of at least {min_length} values",
     "too_long": "a list of at most {max_length} values",
-}
-"""Kind of an error of pydantic -> what is allowed; in braces what pydantic knows of it."""
+}  #: Kind of an error of pydantic -> what is allowed; in braces what pydantic knows of it.
 _KINDS = {
     "int": "a whole number",
     "float": "a number",
@@ -207,8 +203,7 @@ _KINDS = {
     "model": "a table",
     "list": "a list",
     "tuple": "a list",
-}
-"""First word of such a kind -> what is allowed."""
+}  #: First word of such a kind -> what is allowed.
 
 
 def _allowed(problem: "ErrorDetails") -> str:

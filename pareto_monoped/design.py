@@ -51,10 +51,8 @@ class Variable:
     factor: str = field(repr=False)  #: what a sensitivity calls it among what moves a design
 
 
-BASE_START_HEIGHT_M = 0.5
-"""Height of the base above the floor at rest (paper, section IV-B)."""
-REST_LENGTH_M = 10.0
-"""l0, rest length of the virtual spring, in a passage that the paper's final text lost."""
+BASE_START_HEIGHT_M = 0.5  #: Height of the base above the floor at rest (paper, section IV-B).
+REST_LENGTH_M = 10.0  #: l0, rest length of the virtual spring, in a passage that the paper's final text lost.
 
 
 def _variable(
@@ -124,8 +122,7 @@ LENGTHS = ("thigh_length_m", "shank_length_m")
 RATIOS = ("knee_ratio", "hip_ratio")
 PAPER_CONTROL = ("stiffness_n_per_m", "damping_n_s_per_m", "torsional_stiffness_n_m_per_rad")
 """K, C and T of the virtual controller."""
-CONTROL = (*PAPER_CONTROL, *DEFAULTS)
-"""Everything that a jump needs besides the robot."""
+CONTROL = (*PAPER_CONTROL, *DEFAULTS)  #: Everything that a jump needs besides the robot.
 LOWER: NDArray[np.float64] = np.array([variable.lower for variable in VARIABLES if variable.default is None])
 UPPER: NDArray[np.float64] = np.array([variable.upper for variable in VARIABLES if variable.default is None])
 """The paper's bounds of its seven variables, shape (7,)."""
@@ -136,11 +133,9 @@ _SHORTEST_M = 0.05
 """Of a link, or of a start above the floor. A shorter link has no room for the actuators' output couplings."""
 LEAST: NDArray[np.float64] = np.array(
     [_SHORTEST_M if name in (*LENGTHS, "start_height_m") else 1.0 if name in RATIOS else 0.0 for name in NAMES]
-)
-"""The least value of each variable that a design can mean; a ratio of 1 is no gearbox. Shape (number of variables,)."""
+)  #: The least value of each variable that a design can mean; a ratio of 1 is no gearbox. Shape (number of variables,).
 LEAST.flags.writeable = False
-MOST = 1e9
-"""Beyond this value of any variable, numbers overflow."""
+MOST = 1e9  #: Beyond this value of any variable, numbers overflow.
 
 
 def in_use(values: Mapping[str, ArrayLike]) -> tuple[Variable, ...]:
@@ -352,8 +347,7 @@ PAPER_CASES: Mapping[str, PaperCase] = _Cases(
 )
 """The rows of the paper's Table I by name: ``nominal``, ``A``, ``B`` and ``C``; each has its ``design``, and the height
 and energy that the authors report."""
-PAPER_MOTOR = "VT8020"
-"""The motor of all rows of Table I; the default wherever a motor may be named."""
+PAPER_MOTOR = "VT8020"  #: The motor of all rows of Table I; the default wherever a motor may be named.
 RuleSet = Literal["paper", "iso6336"]
 """Names of the sets of rules that gearboxes are chosen by: see ``actuator.settings.ActuatorSettings``."""
 RULE_SETS: tuple[RuleSet, ...] = get_args(RuleSet)
@@ -361,8 +355,7 @@ DEFAULT_RULES: RuleSet = "iso6336"
 """The rules of every command and study file that names none. What is stored without rules was made with ``paper``."""
 HEADLINE_HEIGHT_M = PAPER_CASES["C"].height_m
 """Height at which the least energy of a front is quoted, 0.8 m: that of the paper's best design, Case C."""
-GRAVITY_M_PER_S2 = 9.81
-"""The default of MuJoCo, also used for the paper's m g."""
+GRAVITY_M_PER_S2 = 9.81  #: The default of MuJoCo, also used for the paper's m g.
 
 
 ConstraintName = Literal[

@@ -107,8 +107,7 @@ class CheckError(ParetoMonopedError):
 
 _SHOWN = 400
 """Most characters that a message shows of a value, such as a list; our own choice, more than any path has."""
-_ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
-"""Where an object is in memory, as Python's own ``repr`` ends."""
+_ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")  #: Where an object is in memory, as Python's own ``repr`` ends.
 
 
 def complaint(quantity: str, value: object, allowed: str, cure: str) -> str:

@@ -13,10 +13,8 @@ from pathlib import Path
 
 from pareto_monoped.errors import DiskError, OutputError
 
-SQLITE = b"SQLite format 3\x00"
-"""How a database begins (SQLite's file format, section 1.3)."""
-FORCE = "--force (in Python force=True)"
-"""What allows an output to be replaced, on the command line and in Python."""
+SQLITE = b"SQLite format 3\x00"  #: How a database begins (SQLite's file format, section 1.3).
+FORCE = "--force (in Python force=True)"  #: What allows an output to be replaced, on the command line and in Python.
 _BESIDE_A_DATABASE = ("-wal", "-shm", "-journal", "-lock")
 
 
@@ -139,8 +137,7 @@ def _kind(path: Path) -> tuple[bytes, ...]:
     return tuple(line.strip()[:_TOLD] for line in lines[:_LINES])
 
 
-_MAGIC = (b"\x89PNG", b"GIF8", b"\x1aE\xdf\xa3", b"PAR1")
-"""How PNG, GIF, WebM and Parquet files begin."""
+_MAGIC = (b"\x89PNG", b"GIF8", b"\x1aE\xdf\xa3", b"PAR1")  #: How PNG, GIF, WebM and Parquet files begin.
 _LINES, _TOLD = 5, 24
 """Lines, and bytes of each, that tell a page or model from others: our own choice, as long as ours have in common."""
 
@@ -154,8 +151,7 @@ _FAILURES = {
     errno.ENFILE: "close other programs",
     errno.ENOMEM: "close other programs",
     errno.EAGAIN: "close other programs",
-}
-"""Errors of a system that is full or fails, whatever file it is about, and their cures."""
+}  #: Errors of a system that is full or fails, whatever file it is about, and their cures.
 _REFUSALS = {
     errno.ENOENT: "check the path",
     errno.ENOTDIR: "check the path",

@@ -157,9 +157,6 @@ def _shipped_alloys() -> Mapping[str, Alloy]:
     return MappingProxyType(alloys)
 
 
-MATERIALS = _shipped()
-"""The materials that ship with the package."""
-ALLOYS = _shipped_alloys()
-"""The alloys that ship with the package, by the names that the parts use."""
-GEAR_GRADES = _shipped_grades()
-"""The steel grades that ship with the package, by the names that the settings use."""
+MATERIALS = _shipped()  #: The materials that ship with the package.
+ALLOYS = _shipped_alloys()  #: The alloys that ship with the package, by the names that the parts use.
+GEAR_GRADES = _shipped_grades()  #: The steel grades that ship with the package, by the names that the settings use.

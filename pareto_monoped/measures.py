@@ -338,14 +338,11 @@ def _statistic_of(base: Measure, key: str) -> Measure:
 ROBUST_MEASURES: tuple[Measure, ...] = (
     *SHARE_MEASURES,
     *(_statistic_of(base, key) for base in MEASURES for key in STATISTICS),
-)
-"""Every measure of a design under uncertainty; a study stores those that it asks for."""
+)  #: Every measure of a design under uncertainty; a study stores those that it asks for.
 ROBUST_NAMES: tuple[str, ...] = tuple(measure.name for measure in ROBUST_MEASURES)
-GOAL_NAMES: tuple[str, ...] = (*MEASURE_NAMES, *ROBUST_NAMES)
-"""What a study can ask for."""
+GOAL_NAMES: tuple[str, ...] = (*MEASURE_NAMES, *ROBUST_NAMES)  #: What a study can ask for.
 
-OWN = "own_"
-"""What the name of a measure that is a function of the user's own begins with."""
+OWN = "own_"  #: What the name of a measure that is a function of the user's own begins with.
 _OWN = re.compile(rf"{OWN}[A-Za-z_][A-Za-z0-9_]{{0,99}}")
 OWN_REFERENCE = 1000.0
 """Corner of the hypervolume for an own objective whose study names none. Our own choice: nothing is known of the
@@ -402,8 +399,7 @@ def nominal(name: str) -> str:
 
 _ROBUST = frozenset(ROBUST_NAMES)
 
-_MOST_NEAR = 3
-"""Names that are told of those nearest to one that is unknown; our own choice: a line holds them."""
+_MOST_NEAR = 3  #: Names that are told of those nearest to one that is unknown; our own choice: a line holds them.
 
 
 def near_measures(name: object, known: Sequence[str]) -> str:

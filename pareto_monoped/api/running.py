@@ -38,8 +38,7 @@ if TYPE_CHECKING:
 _STUDY = "a Study, or the path of a study file"
 _CALIBRATION = "a Calibration, the name of a shipped one, or the path of a TOML file"
 
-Goal = str | OwnFunction
-"""A measure by its name, or an own function."""
+Goal = str | OwnFunction  #: A measure by its name, or an own function.
 Limits = Mapping[Any, Any] | OwnFunction | Sequence[Any]
 
 

@@ -25,8 +25,7 @@ _LISTEN_S = 0.1
 _SAME_S = 30.0
 """Within which the same line about scheduler or workers is of the same event. Our own choice: studies hear of a worker
 that was killed within a second of each other, and of one that hangs once they have waited for it."""
-_HELD_S = 3.0
-"""How long to wait for the workers of a coordinator that was killed a moment ago: our own choice."""
+_HELD_S = 3.0  #: How long to wait for the workers of a coordinator that was killed a moment ago: our own choice.
 
 
 @dataclass(slots=True, kw_only=True)
@@ -35,24 +34,18 @@ class Standing:
 
     place: Place
     state: State
-    evaluations: int
-    """Number of trials stored; there shall be ``budget``."""
+    evaluations: int  #: Number of trials stored; there shall be ``budget``.
     budget: int
     hypervolume: float
     hypervolume_unit: str
-    new_evaluations: int = 0
-    """Trials stored since the campaign was started."""
+    new_evaluations: int = 0  #: Trials stored since the campaign was started.
     per_second: float = 0.0
     seconds_left: float | None = None
     threads: int = 0
-    seconds: float = 0.0
-    """Running time that is stored, over all sessions."""
-    front: int = 0
-    """Number of designs on the front."""
-    reason: str = ""
-    """Why it failed."""
-    deaths: int = 0
-    """How often its process was killed."""
+    seconds: float = 0.0  #: Running time that is stored, over all sessions.
+    front: int = 0  #: Number of designs on the front.
+    reason: str = ""  #: Why it failed.
+    deaths: int = 0  #: How often its process was killed.
 
     @classmethod
     def of(cls, place: Place, stored: Stored) -> "Standing":
@@ -71,8 +64,7 @@ class Standing:
         return "auditing" if self.state == "running" and self.evaluations >= self.budget else self.state
 
 
-Changed = Callable[[Standing], object]
-"""Called when a study's standing has changed."""
+Changed = Callable[[Standing], object]  #: Called when a study's standing has changed.
 
 
 def run_campaign(
@@ -137,8 +129,7 @@ class _Coordinator:
     news: "queue.SimpleQueue[tuple[Processes, object]]" = field(default_factory=queue.SimpleQueue)
     """What workers say, each with its worker, and their results as futures."""
     slots: int = 1
-    told_s: dict[str, float] = field(default_factory=dict)
-    """When a line about scheduler or workers was told."""
+    told_s: dict[str, float] = field(default_factory=dict)  #: When a line about scheduler or workers was told.
 
     def run(self, standings: Sequence[Standing]) -> bool:
         """Run all of them; returns whether none was left out because of an interrupt."""

@@ -33,8 +33,7 @@ KEYS = {
     "cases": "case",
     "algorithms": "algorithm",
     "seeds": "seed",
-}
-"""Axis -> key of a study file, where it is not the same word."""
+}  #: Axis -> key of a study file, where it is not the same word.
 _TABLES = ("variables", "constraints")
 """Axes whose values are added to the base study's table; those of the others take the place of its value."""
 

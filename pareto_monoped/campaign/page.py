@@ -44,8 +44,7 @@ _SINGULAR = {
     "algorithms": "algorithm",
     "seeds": "seed",
     "evaluations": "number of jumps",
-}
-"""Axis -> what a value of it is called; others by their own name."""
+}  #: Axis -> what a value of it is called; others by their own name.
 _STRIP_PX, _EDGE_PX = 130.0, 6.0
 SCRIPTS = ("dom", "scales", "marks", "plots", "chart")
 """Scripts of the report of a study that this page has, too; its own one follows."""

@@ -28,8 +28,7 @@ class Noted:
     """A line of a study for the user."""
 
     line: str
-    shared: bool = False
-    """Whether it is about scheduler and workers, of which every study hears the same."""
+    shared: bool = False  #: Whether it is about scheduler and workers, of which every study hears the same.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -34,8 +34,7 @@ _COMMANDS = {
     "export": "exports",
     "report": "stored",
     "dashboard": "stored",
-}
-"""Command -> module of this package that defines it, in the order of use."""
+}  #: Command -> module of this package that defines it, in the order of use.
 
 
 class _Commands(click.Group):

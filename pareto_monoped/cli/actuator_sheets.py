@@ -142,8 +142,7 @@ BEARING_COLUMNS: tuple[tuple[str, Literal["left", "right"]], ...] = (
     ("L10\nh", "right"),
     ("s0\npeak", "right"),
     ("s0\nover", "right"),
-)
-"""Heading and alignment of each column of ``bearing_rows``."""
+)  #: Heading and alignment of each column of ``bearing_rows``.
 _LONG_H = 1e6
 
 

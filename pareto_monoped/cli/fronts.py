@@ -34,8 +34,7 @@ def shown_columns(study: "Study", used: "Sequence[Variable]", objectives: "Objec
     return ["trial", *objectives.names, *variables, *_motor_columns(study)]
 
 
-_MOTORS = ("motor", "hip_motor", "knee_motor")
-"""Columns with names of motors."""
+_MOTORS = ("motor", "hip_motor", "knee_motor")  #: Columns with names of motors.
 
 
 def _motor_columns(study: "Study") -> tuple[str, ...]:
@@ -119,8 +118,7 @@ def _say_why_empty(db: StudyPlace) -> None:
         note(why_no_front(data))
 
 
-_MANY = 100
-"""Designs of a table that is told how to be shorter: more than two screens. Our own choice."""
+_MANY = 100  #: Designs of a table that is told how to be shorter: more than two screens. Our own choice.
 
 
 def _spread(rows: "DataFrame", most: int | None) -> "DataFrame":

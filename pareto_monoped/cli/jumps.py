@@ -160,8 +160,7 @@ _CURES = {
     "no_lift_off": "raise stiffness_n_per_m or the gear ratios, or lower damping_n_s_per_m",
     "timeout": "lower stiffness_n_per_m or rest_length_m",
     "diverged": "choose softer contact and stops or a smaller time step in the calibration, or smaller gains",
-}
-"""How a jump can fail -> what may help."""
+}  #: How a jump can fail -> what may help.
 
 
 def _design(case: str, changes: tuple[str, ...]) -> Design:

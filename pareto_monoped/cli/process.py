@@ -27,8 +27,7 @@ from pareto_monoped.errors import ParetoMonopedError
 from pareto_monoped.files import ADRIFT, cure_of, is_adrift, is_failure
 
 _STANDARD = (0, 1, 2)
-_INTERRUPTED = 130
-"""128 and the number of SIGINT, as shells have it."""
+_INTERRUPTED = 130  #: 128 and the number of SIGINT, as shells have it.
 
 
 @contextmanager
@@ -99,8 +98,7 @@ def _flush() -> None:
 TRACEBACK = "PARETO_MONOPED_TRACEBACK"
 """Environment variable that makes faults of the program show where they come from."""
 _KINDS = {"integer": "whole number", "float": "number"}
-_KIND = re.compile(rf"is not a valid ({'|'.join(_KINDS)})(?: range)?")
-"""How click calls what must be a number."""
+_KIND = re.compile(rf"is not a valid ({'|'.join(_KINDS)})(?: range)?")  #: How click calls what must be a number.
 _LONGEST = 1200
 """Characters of a message; of longer ones, such as on a text of a megabyte, the middle is left out. Our own choice."""
 

@@ -84,10 +84,8 @@ def repair(db: StudyPlace) -> None:
     echo(f"{db}: dropped {len(dropped)} trials{numbers}")
 
 
-HOST = "127.0.0.1"
-"""The loopback: nobody else in the network reaches the dashboard, which asks for no password."""
-PORT = 8080
-"""Where optuna-dashboard listens by default, too."""
+HOST = "127.0.0.1"  #: The loopback: nobody else in the network reaches the dashboard, which asks for no password.
+PORT = 8080  #: Where optuna-dashboard listens by default, too.
 
 
 @click.command()

@@ -45,8 +45,7 @@ def echo(text: object = "", *, err: bool = False, nl: bool = True) -> None:
             raise
 
 
-WIDTH = 80
-"""Letters per line of everything that is printed."""
+WIDTH = 80  #: Letters per line of everything that is printed.
 
 
 def wrapped(text: str, indent: int = 2) -> str:

@@ -22,8 +22,7 @@ _FIRST_ROWS = 64
 AT_ONCE = 16
 """Pieces of work that wait for an executor at a time. Our own choice: pieces of 8,000 jumps make 500 tasks together,
 and their results take 50 MB."""
-_REMEMBERED = 9
-"""Tasks whose speed counts. Our own choice: enough that one slow task does not decide."""
+_REMEMBERED = 9  #: Tasks whose speed counts. Our own choice: enough that one slow task does not decide.
 
 
 class Pace:

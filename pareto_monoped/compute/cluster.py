@@ -18,14 +18,11 @@ from pareto_monoped.errors import InputError, WorkerError, require_extra
 if TYPE_CHECKING:
     from distributed import Client
 
-_NEWS_S = 0.5
-"""Between two questions to the scheduler who its workers are."""
-_ANSWER_S = 5.0
-"""For the answer; a network that is cut for longer than this gives no news, see ``_SILENT_S``."""
+_NEWS_S = 0.5  #: Between two questions to the scheduler who its workers are.
+_ANSWER_S = 5.0  #: For the answer; a network that is cut for longer than this gives no news, see ``_SILENT_S``.
 _SILENT_S = 30.0
 """Without news before the scheduler counts as lost: three times as long as a short cut of the network."""
-_CONNECT_S = 10.0
-"""For the first connection: then a wrong address is likelier than a slow scheduler."""
+_CONNECT_S = 10.0  #: For the first connection: then a wrong address is likelier than a slow scheduler.
 _NO_WORKER = "has no worker"
 
 

@@ -20,18 +20,14 @@ from typing import Any
 
 from pareto_monoped.errors import WorkerError
 
-_TICK_S = 0.1
-"""Between two looks at the clock. Our own choice: short beside a task."""
-_AHEAD = 1
-"""Tasks given to a worker beyond those that it does at a time: the next is then already there."""
+_TICK_S = 0.1  #: Between two looks at the clock. Our own choice: short beside a task.
+_AHEAD = 1  #: Tasks given to a worker beyond those that it does at a time: the next is then already there.
 _MOST_LOSSES = 4
 """Workers that a task may lose before it is given up: it may be the task that ends them. Our own choice."""
-_STILLBORN = 6
-"""Workers that may end before their first answer, one after the other. Our own choice."""
+_STILLBORN = 6  #: Workers that may end before their first answer, one after the other. Our own choice.
 _PATIENT_S = 2.0
 """Without any worker before the user hears of it. Our own choice: a scheduler lists its workers within a second."""
-_LATE = 4.0
-"""A task that takes so many times as long as usual is also given to a worker that has nothing to do."""
+_LATE = 4.0  #: A task that takes so many times as long as usual is also given to a worker that has nothing to do.
 
 
 class LostError(Exception):
@@ -42,27 +38,20 @@ class LostError(Exception):
 class Member:
     """A worker; an ``executor`` that does tasks on this worker and nowhere else."""
 
-    name: str
-    """As the user knows it, such as ``worker tcp://10.0.0.7:40001``."""
+    name: str  #: As the user knows it, such as ``worker tcp://10.0.0.7:40001``.
     executor: Executor
-    threads: int = 1
-    """That a task of it may use."""
-    slots: int = 1
-    """Tasks that it does at a time."""
+    threads: int = 1  #: That a task of it may use.
+    slots: int = 1  #: Tasks that it does at a time.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
     """How long a crew waits. Our own choices: a task of jumps takes half a second, the first one a few seconds more."""
 
-    task_s: float = 60.0
-    """Least time after which a worker that does not answer counts as hung."""
-    times: float = 20.0
-    """The same as a multiple of the longest task so far."""
-    first_s: float = 300.0
-    """The same for a worker's first task, for which it may have to compile."""
-    absent_s: float = 60.0
-    """How long to wait for scheduler and workers before giving up."""
+    task_s: float = 60.0  #: Least time after which a worker that does not answer counts as hung.
+    times: float = 20.0  #: The same as a multiple of the longest task so far.
+    first_s: float = 300.0  #: The same for a worker's first task, for which it may have to compile.
+    absent_s: float = 60.0  #: How long to wait for scheduler and workers before giving up.
 
 
 EXPORT_LIMITS = Limits(task_s=900.0)
@@ -72,12 +61,9 @@ EXPORT_LIMITS = Limits(task_s=900.0)
 class Staff(ABC):
     """Workers that come and go."""
 
-    label: str
-    """Of all of them, for messages, such as ``scheduler tcp://10.0.0.7:8786``."""
-    cure: str
-    """What the user can do if nobody is there."""
-    replaces = False
-    """Whether a worker that is dismissed is ended and replaced."""
+    label: str  #: Of all of them, for messages, such as ``scheduler tcp://10.0.0.7:8786``.
+    cure: str  #: What the user can do if nobody is there.
+    replaces = False  #: Whether a worker that is dismissed is ended and replaced.
 
     @abstractmethod
     def present(self) -> Mapping[str, Member]:
@@ -106,8 +92,7 @@ class Task:
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
     future: Future[Any] = field(default_factory=Future)
-    number: int = 0
-    """Among the tasks of its executor."""
+    number: int = 0  #: Among the tasks of its executor.
     losses: int = 0
     holders: set[str] = field(default_factory=set)
 
@@ -131,8 +116,7 @@ class _Given:
     since_s: float
 
 
-Check = Callable[[Any], str | None]
-"""What is wrong with a worker by its answer to the greeting; None if it may work."""
+Check = Callable[[Any], str | None]  #: What is wrong with a worker by its answer to the greeting; None if it may work.
 
 
 class Crew(Executor):

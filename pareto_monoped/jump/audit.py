@@ -35,8 +35,7 @@ SPREAD_PERCENTILE = 90.0
 """Percentile of the changes under perturbations that is compared with the limit; the worst change is only recorded."""
 PERTURBED = tuple(name for name in PAPER_NAMES if name not in RATIOS)
 """Variables that are perturbed. A gear ratio only selects a gearbox: the robot is the same between two gearboxes."""
-FIRST_COPIES = 2
-"""How many perturbed copies of a design jump first in a brief audit."""
+FIRST_COPIES = 2  #: How many perturbed copies of a design jump first in a brief audit.
 CLEAR_SPREAD, CLEAR_HALF_STEP = 0.01, 0.2
 """Shares of their limits that the changes of these copies and those with the step halved may reach if no more copies
 are to jump. Our own choice, by measurement: any jump that is smooth in its design stays far below both, and one that is
@@ -63,8 +62,7 @@ LIMITS: tuple[Limit, ...] = (
     Limit(name="half_step_energy", most=0.01, text="energy with the step halved"),
     # Energy that is unaccounted for is no better than energy that changes with the step.
     Limit(name="energy_balance_error", most=0.01, text="energy balance"),
-)
-"""All conditions on a well-conditioned jump, besides that there is a jump."""
+)  #: All conditions on a well-conditioned jump, besides that there is a jump.
 
 
 def exceeded(values: Mapping[str, float]) -> tuple[str, ...]:

@@ -293,8 +293,7 @@ _LATER = {
     "drive": ("knee_torque_scale", "regeneration_share", "standby_power_w", "efficiency"),
     "controller": ("weight", "flight"),
     "simulation": ("control_period_s", "delay_s", "positions_read"),
-}
-"""Fields that calibrations did not always have, by table."""
+}  #: Fields that calibrations did not always have, by table.
 
 
 def calibration_values(calibration: Calibration) -> dict[str, Any]:

@@ -6,8 +6,7 @@ from here as it is (``jump.evaluate``). Importing this module does not import nu
 
 import numpy as np
 
-TOUCH_M = 1e-9
-"""Clearance that still counts as touching, because of rounding in the start pose."""
+TOUCH_M = 1e-9  #: Clearance that still counts as touching, because of rounding in the start pose.
 MOST_DELAY = 8
 """Control periods that a command can be late: 3 ms (bus and driver) at a period of 0.5 ms, and two more."""
 
@@ -101,7 +100,5 @@ RECORD = np.dtype(
         ("directions", _STATE),  # sine and cosine of the angles of thigh and shank there
     ],
     align=True,
-)
-"""Everything the controller knows about one jump; pairs are hip, knee. MuJoCo's user data must be float64."""
-RECORD_NUMBERS = RECORD.itemsize // 8
-"""Length of a record in MuJoCo's user data."""
+)  #: Everything the controller knows about one jump; pairs are hip, knee. MuJoCo's user data must be float64.
+RECORD_NUMBERS = RECORD.itemsize // 8  #: Length of a record in MuJoCo's user data.

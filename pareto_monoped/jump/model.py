@@ -18,8 +18,7 @@ from pareto_monoped.jump.end_stops import EndStops, end_stops
 from pareto_monoped.robot.population import RobotArrays
 from pareto_monoped.robot.units import JOINTS
 
-LEAST_IMPEDANCE = 0.0001
-"""MuJoCo's smallest impedance (mjMINIMP), which a hardening spring has at first touch."""
+LEAST_IMPEDANCE = 0.0001  #: MuJoCo's smallest impedance (mjMINIMP), which a hardening spring has at first touch.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

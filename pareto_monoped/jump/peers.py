@@ -24,20 +24,17 @@ from pareto_monoped.errors import complaint as complaint_of
 from pareto_monoped.jump.calibration import calibration_names, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 
-_DRAWN = 12
-"""Probe designs besides the paper's. Our own choice: all together jump in a few tenths of a second."""
+_DRAWN = 12  #: Probe designs besides the paper's. Our own choice: all together jump in a few tenths of a second.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Facts:
     """What decides the numbers of a worker."""
 
-    versions: dict[str, str]
-    """Of this package and of those that compute."""
+    versions: dict[str, str]  #: Of this package and of those that compute.
     system: str
     machine: str
-    numbers: str
-    """Digest of every measure of the probe designs under every shipped calibration, to the last bit."""
+    numbers: str  #: Digest of every measure of the probe designs under every shipped calibration, to the last bit.
     linear_algebra: str
     """Kind of processor that numpy's linear algebra was chosen for, in the words of OpenBLAS. It is not compared, but
     is the likeliest reason of other numbers between hosts."""

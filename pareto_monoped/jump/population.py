@@ -35,8 +35,7 @@ _WARNINGS = {
     "mjWARN_INERTIA": "its mass matrix became singular",
     "mjWARN_CONTACTFULL": _FULL,
     "mjWARN_CNSTRFULL": _FULL,
-}
-"""MuJoCo's warnings in our words, those that say most first."""
+}  #: MuJoCo's warnings in our words, those that say most first.
 
 
 @dataclass(slots=True, kw_only=True)

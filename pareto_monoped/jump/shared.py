@@ -25,8 +25,7 @@ from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.variations import Variations, joined, take
 
 Floats = NDArray[np.float64]
-Setup = tuple[tuple[JointMaps, ...], Calibration]
-"""Gearboxes of every kit of motors, and the jump model."""
+Setup = tuple[tuple[JointMaps, ...], Calibration]  #: Gearboxes of every kit of motors, and the jump model.
 _SOURCE = "a task's setup"
 
 

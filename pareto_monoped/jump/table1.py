@@ -11,8 +11,7 @@ from pareto_monoped.jump.audit import perturbed
 from pareto_monoped.jump.calibration import Calibration, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 
-PERTURBATIONS = 100
-"""Copies per case, the design itself among them."""
+PERTURBATIONS = 100  #: Copies per case, the design itself among them.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
