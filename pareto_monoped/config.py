@@ -1,7 +1,4 @@
-"""Read TOML files into checked, frozen dataclasses; a wrong field becomes an error of one line. JSON is read, too.
-
-What is read may come from a stranger: TOML and JSON have limits of size and depth.
-"""
+"""Read TOML files into checked, frozen dataclasses, and JSON within limits: either may come from a stranger."""
 
 import difflib
 import json
@@ -42,12 +39,7 @@ class Strict:
 
 
 def read_toml(path: Path, *, what: str, error: type[InputError] = InputError) -> dict[str, Any]:
-    """The tables of a TOML file.
-
-    Args:
-        path: the file.
-        what: what the file should be, for the error message, such as ``"motor file"``.
-        error: the kind of ``InputError`` to raise.
+    """Return the tables of a TOML file; ``what`` begins error messages, such as ``"motor file"``.
 
     Raises:
         InputError: (or ``error``) the file is missing or unreadable, or is not valid TOML.
@@ -83,7 +75,7 @@ def read_toml(path: Path, *, what: str, error: type[InputError] = InputError) ->
 
 
 def parsed_json(text: Any) -> Any:
-    """The value of a JSON text of limited size and depth.
+    """Return the value of a JSON text.
 
     Raises:
         ValueError: no text, no JSON, or beyond ``MAX_JSON_CHARACTERS`` or ``MAX_JSON_DEPTH``.
@@ -103,7 +95,7 @@ def parsed_json(text: Any) -> Any:
 
 
 def read_json(path: Path) -> Any:
-    """The value of a JSON file of limited size and depth.
+    """Return the value of a JSON file of limited size and depth.
 
     Raises:
         OSError: it cannot be read.
@@ -132,18 +124,13 @@ def read_shipped(name: str, *, what: str, error: type[InputError] = InputError) 
 def checked(kind: type[T], values: Mapping[str, Any], *, source: str, error: type[InputError] = InputError) -> T:
     """Make an instance of dataclass ``kind`` from plain values; every field is checked against its annotation.
 
-    Bounds stand in the annotations (``Annotated[float, Field(gt=0)]``). Unknown keys are refused if the dataclass
-    has ``__pydantic_config__ = ConfigDict(extra="forbid")``.
-
-    Args:
-        kind: the dataclass.
-        values: the fields by name, nested for nested dataclasses.
-        source: where the values come from; begins the error message, such as ``"motor file 'my.toml'"``.
-        error: the kind of ``InputError`` to raise.
+    Bounds stand in the annotations (``Positive``). Values of nested dataclasses are nested, and a dataclass that
+    inherits from ``Strict`` refuses unknown keys. ``source`` begins the error message, such as ``"motor file
+    'my.toml'"``.
 
     Raises:
-        InputError: (or ``error``) a field is wrong; the message names the first one, its value, what is allowed and
-            the cure.
+        InputError: (or ``error``) a field is wrong; the message names the first one, its value, what is allowed and the
+            cure.
     """
     try:
         return TypeAdapter(kind).validate_python(dict(values))

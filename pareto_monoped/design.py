@@ -139,10 +139,8 @@ MOST = 1e9  #: Beyond this value of any variable, numbers overflow.
 
 
 def in_use(values: Mapping[str, ArrayLike]) -> tuple[Variable, ...]:
-    """The paper's seven variables, and the optional ones of which some value differs from the default.
-
-    Args:
-        values: name -> values, such as a data frame of trials; an absent optional variable is not in use.
+    """Return the paper's seven variables and the optional ones of which some value in a table of trials differs from
+    the default.
     """
     return tuple(
         variable
@@ -153,13 +151,9 @@ def in_use(values: Mapping[str, ArrayLike]) -> tuple[Variable, ...]:
 
 
 def complete(designs: ArrayLike) -> NDArray[np.float64]:
-    """Designs with a column for each variable.
+    """Return designs with a column for each variable, of which optional ones may have been left out at their defaults.
 
-    Args:
-        designs: shape (..., 7), the paper's variables, or (..., number of variables); in the order of ``NAMES``.
-
-    Returns:
-        Shape (..., number of variables): optional variables that were left out at their defaults.
+    ``designs`` has shape (..., 7), the paper's variables, or (..., number of variables), in the order of ``NAMES``.
 
     Raises:
         DesignError: another number of values.
@@ -185,15 +179,7 @@ def complete_control(control: ArrayLike) -> NDArray[np.float64]:
 
 
 def columns(designs: ArrayLike, names: Sequence[str]) -> NDArray[np.float64]:
-    """The values of some variables.
-
-    Args:
-        designs: see ``complete``.
-        names: which variables, such as ``CONTROL``.
-
-    Returns:
-        A C-ordered copy, shape (..., len(names)), in the order of ``names``.
-    """
+    """Return a C-ordered copy of some variables' values, such as ``CONTROL``; for ``designs`` see ``complete``."""
     return np.take(complete(designs), [NAMES.index(name) for name in names], axis=-1)
 
 
@@ -208,11 +194,7 @@ def nonsense(name: str, value: float) -> str | None:
 
 
 def _number(name: str, given: object) -> float:
-    """A value that a design can mean.
-
-    Raises:
-        DesignError: no number, or nonsense.
-    """
+    """Return a value that a design can mean, or raise ``DesignError``."""
     if isinstance(given, bool) or not isinstance(given, Real):
         raise DesignError(complaint(name, given, "a finite number", "give a number"))
     try:
@@ -278,7 +260,7 @@ class Design:
 
     @classmethod
     def from_array(cls, values: ArrayLike) -> "Design":
-        """A design from its values in the order of ``NAMES``.
+        """Return a design from its values in the order of ``NAMES``.
 
         Raises:
             DesignError: a wrong number of values, or a value that no design can mean.
@@ -293,7 +275,7 @@ class Design:
         return cls(**dict(zip(NAMES, complete(array).tolist(), strict=True)))
 
     def replace(self, changes: Mapping[str, float]) -> "Design":
-        """A copy with some variables changed.
+        """Return a copy with some variables changed.
 
         Raises:
             DesignError: an unknown name, or a value that no design can mean.
@@ -364,6 +346,7 @@ ConstraintName = Literal[
     "bearing_room", "face_width", "flank_strength", "root_strength", "overload_strength", "output_bearing",
     "planet_bearing",
 ]  # fmt: skip
-"""Names of the rules in ``rules.CONSTRAINTS``. They stand here because the rules read the settings, which check names,
-and because the command line lists them without any of that."""
+"""Names of the rules in ``rules.CONSTRAINTS``, which stand here because settings and command line check names without
+the rules.
+"""
 CONSTRAINT_NAMES: tuple[ConstraintName, ...] = get_args(ConstraintName)

@@ -1,6 +1,6 @@
 """Write files so that they are complete or absent: first beside the target, then renamed.
 
-No output replaces a study, and none replaces a file of another kind unless it is told to.
+No output replaces a study, and none replaces a file of another kind unless ``force`` is set.
 """
 
 import errno
@@ -24,13 +24,9 @@ def replacing(path: Path, *, force: bool = False) -> Iterator[Path]:
 
     The temporary file keeps the suffix of ``path``, for writers that choose the format by it.
 
-    Args:
-        path: the file to write.
-        force: whether it may replace a file of another kind.
-
     Raises:
-        OutputError: the folder is missing or cannot be written to, or ``path`` is a database, a device, or a file of
-            another kind.
+        OutputError: the folder is missing or cannot be written to, or ``path`` is a database, a device, or, without
+            ``force``, a file of another kind.
         DiskError: the disk is full or fails.
     """
     refuse_database(path)
@@ -55,9 +51,7 @@ def replacing(path: Path, *, force: bool = False) -> Iterator[Path]:
 def temporary_beside(path: Path, temporary: Path | None = None) -> Iterator[Path]:
     """Yield a new, empty file beside ``path``, with its suffix and ordinary permissions; at the end it is deleted.
 
-    Args:
-        path: the file.
-        temporary: name of the new file, for a writer that holds a lock. What a killed writer left there is deleted.
+    A writer that holds a lock gives the new file's name; what a killed writer left there is deleted.
 
     Raises:
         OutputError: the folder is missing or cannot be written to.
@@ -80,11 +74,7 @@ def temporary_beside(path: Path, temporary: Path | None = None) -> Iterator[Path
 
 
 def refuse_database(path: Path) -> None:
-    """Refuse to write over a study, any other database, a file that belongs to one, or a device.
-
-    Raises:
-        OutputError: it is one.
-    """
+    """Raise ``OutputError`` for a study, any other database, a file that belongs to one, or a device."""
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError):
@@ -99,12 +89,7 @@ def refuse_database(path: Path) -> None:
 
 
 def require_writable(path: Path) -> None:
-    """Refuse an output that could not be written, before the work of which it is to tell.
-
-    Raises:
-        OutputError: its folder is missing or cannot be written to, or see ``refuse_database``.
-        DiskError: the disk is full or fails.
-    """
+    """Refuse an output that could not be written, before work is done for it; raises as ``temporary_beside`` does."""
     refuse_database(path)
     with temporary_beside(path):
         pass
@@ -121,9 +106,10 @@ def _beginning(path: Path) -> bytes:
 
 
 def _kind(path: Path) -> tuple[bytes, ...]:
-    """How files of this kind begin; empty for an empty file.
+    """Return how files of this kind begin; empty for an empty file.
 
-    Of pictures their magic number, of tables the name of the first column, of other text the beginnings of its lines.
+    For pictures this is the magic number, for tables the first column's name, for other text the beginnings of its
+    lines.
     """
     content = _beginning(path)
     if content[4:8] == b"ftyp":  # MP4 begins with the length of its first box
@@ -186,13 +172,7 @@ def is_adrift() -> bool:
 
 
 def unwritable(path: Path, error: OSError, cure: str) -> OutputError | DiskError:
-    """The error for a file or folder that the system does not let us write.
-
-    Args:
-        path: the file or folder.
-        error: what the system said.
-        cure: what helps, unless the system itself is full or fails.
-    """
+    """Return the error for a file or folder that cannot be written; ``cure`` helps unless the system is full or fails."""
     if error.errno == errno.ENOENT and is_adrift():
         return OutputError(ADRIFT)
     kind = DiskError if is_failure(error) else OutputError

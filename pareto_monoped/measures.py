@@ -76,10 +76,7 @@ def _row(
     short: str = "",
     **more: Any,
 ) -> Measure:
-    """Describe a measure, which is shown in its stored unit unless ``shown`` gives another unit and the factor to it.
-
-    ``_described`` gives it the name of its field. Without ``short``, the label is short enough.
-    """
+    """Describe a measure, which is shown in its stored unit unless ``shown`` gives another unit and the factor to it."""
     shown_unit, scale = shown or (unit, 1.0)
     return Measure(
         name="",
@@ -345,17 +342,14 @@ GOAL_NAMES: tuple[str, ...] = (*MEASURE_NAMES, *ROBUST_NAMES)  #: What a study c
 OWN = "own_"  #: What the name of a measure that is a function of the user's own begins with.
 _OWN = re.compile(rf"{OWN}[A-Za-z_][A-Za-z0-9_]{{0,99}}")
 OWN_REFERENCE = 1000.0
-"""Corner of the hypervolume for an own objective whose study names none. Our own choice: nothing is known of the
-function, and values beyond the corner add no volume, so it is far off."""
+"""Corner of the hypervolume for an own objective whose study names none: far off, as values beyond it add no volume."""
 
 _BY_NAME = {measure.name: measure for measure in (*MEASURES, *AUDIT_MEASURES, *SCREEN_MEASURES, *ROBUST_MEASURES)}
 
 
 def measure(name: str) -> Measure:
-    """The measure called ``name``, of a jump, of a design under uncertainty, or of an audit.
-
-    Raises:
-        KeyError: there is none.
+    """Return the measure called ``name``, of a jump, of a design under uncertainty, or of an audit; raise ``KeyError``
+    if unknown.
     """
     return _own_measure(name) if is_own(name) else _BY_NAME[name]
 
@@ -403,12 +397,7 @@ _MOST_NEAR = 3  #: Names that are told of those nearest to one that is unknown; 
 
 
 def near_measures(name: object, known: Sequence[str]) -> str:
-    """The cure for an unknown name: the most similar one, or the nearest few and where all are.
-
-    Args:
-        name: as it was given.
-        known: names that may be given.
-    """
+    """Return the cure for an unknown name: the most similar known one, or the nearest few and where all are."""
     if near := difflib.get_close_matches(str(name), known, n=1):
         return f"did you mean {near[0]!r}?"
     plain = [one for one in known if not is_robust(one)]

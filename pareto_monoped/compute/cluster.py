@@ -1,7 +1,4 @@
-"""The workers of a Dask scheduler.
-
-Dask sends tasks and results by pickle, between hosts that trust each other (``docs/scaling.md``).
-"""
+"""The workers of a Dask scheduler. Dask sends pickles, so all hosts must trust each other (``docs/scaling.md``)."""
 
 import logging
 import threading
@@ -27,10 +24,7 @@ _NO_WORKER = "has no worker"
 
 
 class DaskWorkers(Staff):
-    """Workers that a scheduler knows, as they come and go.
-
-    Args:
-        address: of the scheduler, such as ``tcp://10.0.0.7:8786``.
+    """Workers that the scheduler at an address such as ``tcp://10.0.0.7:8786`` knows, as they come and go.
 
     Raises:
         InputError: Dask is not installed here, the text is no address, or it asks for TLS without certificates.
@@ -64,10 +58,8 @@ class DaskWorkers(Staff):
         return "does not answer (the connection has ended)" if broken else self._state
 
     def threads(self) -> int:
-        """Number of threads of all workers together at this moment.
-
-        Raises:
-            WorkerError: the scheduler does not answer.
+        """Return the number of threads of all workers together at this moment; raise ``WorkerError`` if no scheduler
+        answers.
         """
         try:
             return sum(self._ask().values())
@@ -124,10 +116,10 @@ class DaskWorkers(Staff):
         from distributed import Client
 
         class Kept(Client):  # type: ignore[misc]  # Dask tells no types
-            """A client that nobody but ``close`` closes.
+            """A client that only ``close`` closes.
 
-            When Dask's own is forgotten it closes itself, in the thread in which the garbage collector happens to run;
-            where that is just starting the next client, it waits for a lock that it holds itself.
+            Dask's own closes itself in the thread in which the garbage collector runs; if that thread is just starting
+            the next client, it waits for a lock that it holds itself.
             """
 
             def __del__(self) -> None:
@@ -177,24 +169,15 @@ class DaskWorkers(Staff):
 
 
 def threads_of(address: str) -> int:
-    """Number of threads of a scheduler's workers at this moment; 0 while none has come.
-
-    Args:
-        address: of the scheduler.
-
-    Raises:
-        InputError, WorkerError: see ``DaskWorkers``.
+    """Return the present number of threads of a scheduler's workers, 0 before the first comes; raises as
+    ``DaskWorkers`` does.
     """
     with closing(DaskWorkers(address)) as workers:
         return workers.threads()
 
 
 def _refuse_no_address(address: str) -> None:
-    """Refuse at once what cannot be an address, for which Dask would be asked again and again.
-
-    Raises:
-        InputError: it is none.
-    """
+    """Raise ``InputError`` at once for what cannot be an address, which Dask would try again and again."""
     from distributed.comm.addressing import get_address_host_port
 
     try:

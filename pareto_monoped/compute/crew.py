@@ -1,9 +1,8 @@
 """An executor over workers that may die, hang, be slow, come late or compute other numbers.
 
-A ``Crew`` hands each task to one worker at a time and does it again elsewhere if that worker is lost. A task has one
-result, the first that comes; tasks must therefore be pure functions. Who the workers are and whether they are still
-there is known to a ``Staff``: processes of this machine (``compute.processes``) or the workers of a Dask scheduler
-(``compute.cluster``).
+A ``Crew`` hands each task to one worker at a time and does it again elsewhere if that worker is lost. The first result
+counts; tasks must therefore be pure functions. A ``Staff`` knows the workers: processes of this machine
+(``compute.processes``) or those of a Dask scheduler (``compute.cluster``).
 """
 
 import queue
@@ -120,16 +119,11 @@ Check = Callable[[Any], str | None]  #: What is wrong with a worker by its answe
 
 
 class Crew(Executor):
-    """Shares tasks out among the workers of a staff.
+    """Shares tasks out among the workers of a staff, which is closed with the crew.
 
-    Args:
-        staff: the workers, which come and go; closed with the crew.
-        greeting: the first task of every worker; it is called with the worker's number of threads.
-        check: says what is wrong with the answer.
-        tell: called with a line for the user.
-        limits: how long to wait for tasks and workers.
-        seat: crews that share workers, such as those of a campaign's studies, have different ones: among workers with
-            equally little to do, each prefers another, or another thread of the same.
+    ``greeting`` is the first task of every worker and gets the worker's number of threads; ``check`` says what is wrong
+    with its answer. ``tell`` is called with lines for the user. Crews that share workers, such as those of a campaign's
+    studies, have different ``seat`` numbers: among workers with equally little to do, each prefers another.
     """
 
     def __init__(

@@ -1,7 +1,7 @@
-"""Fresh processes of this machine, which do tasks and can be ended at any moment.
+"""Fresh processes of this machine, which do tasks and can be ended at any moment: both ends of their connections.
 
-Both ends are here: ``Processes`` gives tasks, ``serve`` does them. A process is started as a program of its own, since
-the threads of simulator and CAD kernel do not survive a fork, and a script would be run again by ``multiprocessing``.
+``Processes`` gives tasks, ``serve`` does them. A process is started as a program of its own: the threads of simulator
+and CAD kernel do not survive a fork, and ``multiprocessing`` would run a script again.
 """
 
 import atexit
@@ -78,14 +78,9 @@ class _Line:
 class Processes(Executor):
     """An executor of fresh processes, each of which does one task after the other.
 
-    A process that ends under a task is not replaced: the task fails, and once no process is left all others do. As a
-    context: leaving it by an exception ends the processes at once.
-
-    Args:
-        count: number of processes.
-        hear: called with what tasks ``say``, in another thread and before the task has its result.
-        lost: makes the exception of a task from the exit code of the process that ended under it.
-        environment: of the processes, besides that of this one.
+    A process that ends under a task is not replaced: ``lost`` makes the task's exception from its exit code, and once
+    no process is left all other tasks fail, too. ``hear`` is called with what tasks ``say``, in another thread and
+    before the task has its result. If an exception leaves the context, the processes end at once.
     """
 
     def __init__(
@@ -239,12 +234,7 @@ def _settle(future: Future[Any], answer: bytes) -> None:
 
 
 class LocalProcesses(Staff):
-    """A number of processes, of which each that is lost is replaced.
-
-    Args:
-        count: number of processes.
-        threads: of each.
-    """
+    """A number of processes, each with its threads; one that is lost is replaced."""
 
     replaces = True
     cure = "use fewer processes"
@@ -304,10 +294,9 @@ def asked_to_stop() -> bool:
 
 
 def end_by(end: Callable[[], object]) -> None:
-    """Let this process end by a function, which tidies up, when it is told to, is alone, or gets SIGTERM.
+    """Let this process end by ``end`` when it is told to, is alone, or gets SIGTERM.
 
-    Args:
-        end: called in a thread of its own while the task at hand goes on; it does not return.
+    ``end`` tidies up in a thread of its own while the task at hand goes on, and does not return.
     """
     global _end
     _end = end
@@ -315,11 +304,7 @@ def end_by(end: Callable[[], object]) -> None:
 
 
 def serve(handle: int) -> None:
-    """Do one task after the other for the process that started this one, with which this one ends.
-
-    Args:
-        handle: file descriptor of the connection.
-    """
+    """Do tasks from the connection with this file descriptor until the process at its other end has ended."""
     global _parent, _at_work
     with suppress(OSError):
         os.dup2(2, 1)  # what a library prints is not among the results of a command

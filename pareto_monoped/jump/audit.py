@@ -2,10 +2,7 @@
 
 A jump is well-conditioned if its height and energy are properties of the design and not accidents of the simulation:
 its energy balance closes, and neither a finer step nor a link longer by less than a micrometre changes it much.
-``LIMITS`` says how much; ``Audits.well_conditioned`` is the verdict that studies, reports and commands use.
-
-A full audit also measures what no limit is about. A brief one leaves that out, and where the result is clear after a
-few perturbed copies, no more of them jump.
+``LIMITS`` says how much; ``Audits.well_conditioned`` is the verdict.
 """
 
 from collections.abc import Mapping
@@ -37,9 +34,9 @@ PERTURBED = tuple(name for name in PAPER_NAMES if name not in RATIOS)
 """Variables that are perturbed. A gear ratio only selects a gearbox: the robot is the same between two gearboxes."""
 FIRST_COPIES = 2  #: How many perturbed copies of a design jump first in a brief audit.
 CLEAR_SPREAD, CLEAR_HALF_STEP = 0.01, 0.2
-"""Shares of their limits that the changes of these copies and those with the step halved may reach if no more copies
-are to jump. Our own choice, by measurement: any jump that is smooth in its design stays far below both, and one that is
-not shows in one or the other (``benchmarks/audit_time.py``)."""
+"""Shares of their limits that the changes of these copies and of the halved step may reach if no more copies are to
+jump. Our own choice, measured by ``benchmarks/audit_time.py``: jumps that are smooth in their design stay far below.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,11 +63,7 @@ LIMITS: tuple[Limit, ...] = (
 
 
 def exceeded(values: Mapping[str, float]) -> tuple[str, ...]:
-    """One line for each of ``LIMITS`` that an audited jump does not keep; empty if it is well-conditioned.
-
-    Args:
-        values: name to value of the audit's measures; NaN counts as too much.
-    """
+    """Return one line for each of ``LIMITS`` that an audited jump does not keep; the value NaN keeps none."""
     lines = []
     for limit in LIMITS:
         shown = measure(limit.name)
@@ -111,17 +104,9 @@ class Audits(AuditMeasures):
 
 
 def perturbed(designs: Floats, count: int, rng: np.random.Generator) -> Floats:
-    """Perturbed copies of designs: each continuous variable changed by up to 1e-6 of its value.
+    """Return perturbed copies of designs: each continuous variable in use is changed by up to 1e-6 of its value.
 
-    Optional variables at their defaults are not in use, and stay.
-
-    Args:
-        designs: shape (n, 7) or (n, number of variables).
-        count: copies per design.
-        rng: source of the perturbations.
-
-    Returns:
-        The copies of the first design, then those of the second, ..., shape (n * count, number of variables).
+    The copies of the first design come first, then those of the second, ..., shape (n * count, number of variables).
     """
     copies = np.repeat(np.atleast_2d(complete(designs)), count, axis=0)
     places = [NAMES.index(name) for name in PERTURBED]
@@ -134,7 +119,7 @@ def perturbed(designs: Floats, count: int, rng: np.random.Generator) -> Floats:
 
 
 def finer(calibration: Calibration, parts: int) -> Calibration:
-    """The calibration with its step divided by ``parts``.
+    """Return the calibration with its step divided by ``parts``.
 
     The control period stays if the calibration names one, or if the controller could not keep the commands of a longer
     delay. Otherwise each step is a period, and both become shorter.
@@ -158,18 +143,11 @@ def audit(
     known: Jumps | None = None,
     brief: bool = False,
 ) -> Audits:
-    """Audit the jumps of designs.
+    """Audit the jumps of designs, which may be ``known`` already; ``executor`` makes other jumps in place of the
+    threads.
 
-    Args:
-        designs: shape (n, number of variables).
-        actuator_map: the gearboxes.
-        calibration: the jump model.
-        workers: threads.
-        executor: does the jumps in their place; what they mean is decided here.
-        perturbations: perturbed copies per design.
-        seed: of the perturbations; the same seed gives the same audit.
-        known: the jumps, if they have been simulated already.
-        brief: measure only what a limit is about, and perturb less often where the result is clear.
+    Each design has ``perturbations`` copies; the same ``seed`` gives the same audit. A brief audit measures only what
+    has a limit, and perturbs less often where the result is clear.
     """
     values = np.atleast_2d(complete(designs))
     jumps = evaluator_of(actuator_map, calibration, workers, executor=executor)
@@ -214,13 +192,7 @@ def _of(evaluations: Evaluations) -> Jumps:
 
 
 def _spread(copies: Floats, base: Jumps, jumps: Evaluator) -> dict[str, Floats]:
-    """The changes of height and energy under perturbations.
-
-    Args:
-        copies: of each design, shape (n, copies, number of variables).
-        base: the jumps of the designs.
-        jumps: designs to evaluations.
-    """
+    """Return the changes of height and energy in ``copies`` of each design, shape (n, copies, number of variables)."""
     found = jumps(copies.reshape(-1, copies.shape[-1]))
     height = np.abs(found.height_m.reshape(copies.shape[:2]) - base.height_m[:, None])
     energy = np.abs(found.energy_j.reshape(copies.shape[:2]) / base.energy_j[:, None] - 1.0)
@@ -272,9 +244,10 @@ def _balances(setup: Setup, values: Floats, workers: int) -> Floats:
 
 
 def _with_two_periods(values: Floats, jumps: Evaluator, quarter: Evaluations) -> tuple[Evaluations, Evaluations]:
-    """Jumps with a quarter of the step: with the control period as it is, and with a quarter of it; without delay.
+    """Return the jumps with a quarter of the step and no delay, with the control period as it is and with a quarter of
+    it.
 
-    ``quarter``, the jumps under ``finer(calibration, 4)``, are one of both if there is no delay anyway.
+    Without delay, ``quarter``, the jumps under ``finer(calibration, 4)``, are one of both.
     """
     calibration = jumps.calibration
     simulation = calibration.simulation
@@ -301,10 +274,10 @@ def _changes(prefix: str, base: Jumps | Evaluations, other: Evaluations) -> dict
 
 
 def _percentile(changes: Floats, ok: NDArray[np.intp], percent: float) -> Floats:
-    """A percentile of each row of ``changes``, shape (n, copies); NaN for rows not in ``ok``.
+    """Return a percentile of each row of ``changes``, shape (n, copies); NaN for rows not in ``ok``.
 
-    A perturbed jump that fails is the worst of changes: NaN becomes infinity. The percentile is the smallest change
-    that at least ``percent`` of the copies do not exceed. It is not interpolated, which infinity would spoil.
+    A failed copy (NaN) counts as an infinite change. The percentile is the smallest change that at least ``percent`` of
+    the copies do not exceed, not interpolated, because infinity would spoil it.
     """
     result = np.full(len(changes), np.nan)
     known = np.sort(np.where(np.isnan(changes[ok]), np.inf, changes[ok]), axis=1)

@@ -1,10 +1,7 @@
-"""Where the energy of one jump went: a balance of the motors' work, from the start to the apex.
+"""The energy balance from the start of a jump to its apex: in full for one jump, and what remains open for many.
 
-How well the energy balances of many jumps close, all stepped at once.
-
-``balance.energy_balance`` says where the energy of one jump went. The audit of a front needs only what remains open,
-for hundreds of jumps. That takes the sum of all constraint forces and no entry for the integrator, and all jumps step
-together.
+The audit of a front needs only what remains open, for hundreds of jumps. This takes the sum of all constraint forces
+and no entry for the integrator, so all jumps step together.
 """
 
 from dataclasses import dataclass
@@ -67,7 +64,7 @@ class EnergyBalance:
 
 
 def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibration) -> EnergyBalance:
-    """Where the energy of the first robot's jump went.
+    """Return where the energy of the first robot's jump went.
 
     The work of a force in a step is the force times the mean of the speeds before and after the step. With constant
     inertia this is exactly the change of kinetic energy that the force causes in MuJoCo's semi-implicit step. In a
@@ -208,14 +205,7 @@ class Balanced:
 
 
 def balance_errors(robots: RobotArrays, control: Floats, calibration: Calibration, workers: int = 1) -> Floats:
-    """``EnergyBalance.error`` of the jumps of n robots that can stand, shape (n,).
-
-    Args:
-        robots: n robots.
-        control: of each, see ``design.complete_control``.
-        calibration: the jump model.
-        workers: threads.
-    """
+    """Return ``EnergyBalance.error`` of the jumps of n robots that can stand, shape (n,)."""
     if calibration.simulation.integrator == "RK4":
         # Its steps leave the forces of their last stage, not those of the state.
         single = (take(robots, np.array([i])) for i in range(len(robots)))
@@ -225,14 +215,7 @@ def balance_errors(robots: RobotArrays, control: Floats, calibration: Calibratio
 
 @quiet()
 def balanced(robots: RobotArrays, control: Floats, calibration: Calibration, workers: int = 1) -> Balanced:
-    """The jumps of n robots that can stand, with their balances; not for the integrator RK4.
-
-    Args:
-        robots: n robots.
-        control: of each, see ``design.complete_control``.
-        calibration: the jump model.
-        workers: threads.
-    """
+    """Return the jumps of n robots that can stand, with their balances; not for the integrator RK4."""
     from pareto_monoped.jump.controller import APEX
 
     pose = start_pose(robots, calibration)
@@ -253,18 +236,10 @@ def balanced(robots: RobotArrays, control: Floats, calibration: Calibration, wor
 
 
 def _jumped(population: Population, calibration: Calibration, damping: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """Step all jumps to their ends.
+    """Step all jumps to their ends; a jump in which MuJoCo raises an error or warns ends as diverged.
 
-    Args:
-        population: n jumps, which have not begun.
-        calibration: the jump model.
-        damping: of the joints, shape (n, nv).
-
-    A jump in which MuJoCo raises an error or warns ends as diverged.
-
-    Returns:
-        The joints' work and what dampers and constraints took of it, in joules, shape (n,); positions and speeds at the
-        end, shape (n, nv).
+    ``damping`` of the joints has shape (n, nv). Return the joints' work and what dampers and constraints took of it, in
+    joules, shape (n,), and positions and speeds at the end, shape (n, nv).
     """
     from mujoco.batch import SimulationError
 

@@ -1,8 +1,7 @@
 """Calibrations: named, versioned records of everything that a jump depends on besides the robot.
 
-Three are shipped in ``data/calibrations``: ``reference``, well-posed and the default; ``paper``, the paper's
-simulation with readings, fitted to its Table I; ``ideal``, which is ``reference`` without losses. Users may
-write their own.
+Shipped in ``data/calibrations`` are ``reference``, well-posed and the default; ``paper``, the paper's simulation with
+readings, fitted to its Table I; and ``ideal``, which is ``reference`` without losses.
 """
 
 import json
@@ -34,9 +33,9 @@ _MOST_STEPS = 1e6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EndStop:
-    """The rubber bumpers at both ends of one joint's range.
+    """The rubber bumpers at both ends of one joint's range: spring-dampers that harden with compression
+    (``SpringContact``).
 
-    A bumper is a spring-damper that hardens with compression (see ``SpringContact``), so that force sets in smoothly.
     A bumper of the parts, fully compressed, leaves the joint within the range that the CAD keeps free (``leg.stops``).
     """
 
@@ -157,10 +156,7 @@ class ContactGate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FadeGate:
-    """Torque that fades to zero as the foot rises.
-
-    At a foot clearance c the torque is multiplied by 1 - s(c / length_m), with s(u) = 3 u^2 - 2 u^3 for u from 0 to 1.
-    """
+    """Torque that fades to zero as the foot rises to a clearance c: times 1 - s(c / length_m), s(u) = 3 u^2 - 2 u^3."""
 
     __pydantic_config__ = _STRICT
 
@@ -171,9 +167,8 @@ class FadeGate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Flight:
-    """Springs and dampers that the motors imitate at both joints while the foot is off the floor.
-
-    They pull the leg back to its start pose, within the motors' peak torque.
+    """Springs and dampers that the motors imitate, within their peak torque, to pull the leg to its start pose in
+    flight.
     """
 
     __pydantic_config__ = _STRICT
@@ -297,10 +292,9 @@ _LATER = {
 
 
 def calibration_values(calibration: Calibration) -> dict[str, Any]:
-    """Every value of a calibration as JSON has it; ``calibration_of`` reads it back.
+    """Return every value of a calibration as JSON has it, for ``calibration_of``.
 
-    A field that calibrations did not always have is left out at its default, so that studies stored before it came
-    keep their hash.
+    Fields in ``_LATER`` are left out at their defaults, so that studies stored before keep their hash.
     """
     values: dict[str, Any] = json.loads(json.dumps(asdict(calibration)))
     for table, names in _LATER.items():
@@ -337,12 +331,8 @@ def _is_path(name_or_path: str) -> bool:
 def require_calibration_name(name_or_path: str, *, key: str = "calibration") -> None:
     """Refuse what is neither the name or label of a shipped calibration nor a file, which is not opened.
 
-    Args:
-        name_or_path: the name.
-        key: where it was given, for the message.
-
     Raises:
-        CalibrationError: an unknown name.
+        CalibrationError: an unknown name; the message begins with ``key``.
     """
     if _is_path(name_or_path) or name_or_path in calibration_names() or name_or_path in earlier_calibrations():
         return
@@ -352,7 +342,7 @@ def require_calibration_name(name_or_path: str, *, key: str = "calibration") -> 
 
 
 def load_calibration(name_or_path: str = DEFAULT) -> Calibration:
-    """A calibration by its name, or from a user's TOML file (anything with a slash or ending in ``.toml``).
+    """Return a calibration by its name, or from a user's TOML file (anything with a slash or ending in ``.toml``).
 
     A name means the present version; a label (``reference-1``) means that version, the present one or an earlier one.
 
@@ -375,12 +365,7 @@ def load_calibration(name_or_path: str = DEFAULT) -> Calibration:
 def calibration_of(
     values: Mapping[str, Any], *, source: str, error: type[InputError] = CalibrationError
 ) -> Calibration:
-    """A calibration from plain values, nested as in its file.
-
-    Args:
-        values: every value of the calibration.
-        source: where they come from, the first words of a message.
-        error: which kind of ``InputError`` to raise.
+    """Return a calibration from plain values, nested as in its file; ``source`` begins error messages.
 
     Raises:
         CalibrationError: (or ``error``) a field is missing, unknown or out of range.

@@ -1,14 +1,9 @@
 """The controller inside MuJoCo's step: many steps of many jumps without going back to Python.
 
 MuJoCo calls ``mjcb_control`` in every step, after positions and speeds are known and before forces are (its
-documentation, "Programming, Simulation, Simulation loop"). A compiled callback keeps the batch's threads free of
-Python. The controller's record of a jump is the user data of its simulation and thus part of MuJoCo's own state, so
-that the callback needs no memory of its own and works on any thread. It reads and writes the state through MuJoCo's C
-functions.
-
-MuJoCo's own log, switched off while jumps run: it would be a file ``MUJOCO_LOG.TXT`` in the folder one works in.
-
-What MuJoCo warns of is counted in every simulation, and stands in the status and the reason of the jump.
+documentation, "Programming, Simulation, Simulation loop"). The controller's record of a jump is the user data of its
+simulation and thus part of MuJoCo's own state, so that the compiled callback needs no memory of its own and works on
+any thread. It reads and writes the state through MuJoCo's C functions.
 """
 
 import ctypes
@@ -38,9 +33,8 @@ _quiet_before = (True, True)
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Let MuJoCo write neither to a file nor to standard output; what was set before holds again after the last user.
-
-    Also a decorator.
+    """Let MuJoCo write neither to a file ``MUJOCO_LOG.TXT`` nor to standard output; the last user restores the
+    settings.
     """
     global _users, _quiet_before
     import mujoco
@@ -83,10 +77,8 @@ _before: Callable[..., object] | None = None
 def controlled() -> Iterator[None]:
     """Let the controller act in every simulation whose user data is a controller's record, and in no other.
 
-    A process has only one callback. The one that was installed before is restored when the last user leaves.
-
-    Raises:
-        SimulationError: MuJoCo's library is not where its package has it.
+    A process has only one callback; the last user restores the earlier one. If MuJoCo's library is not where its
+    package has it, this raises ``SimulationError``.
     """
     global _users, _before
     callback = _compiled()
@@ -129,10 +121,9 @@ def _library() -> Path:
 
 
 def _controller(origin: int) -> Callable[[Any, Any], None]:
-    """``mjcb_control``, not yet compiled; MuJoCo calls it in every step of every simulation of the process.
+    """Return ``mjcb_control``, not yet compiled, which MuJoCo calls in every step of every simulation of the process.
 
-    Args:
-        origin: closed over, so that numba does not load a callback from disk that was compiled with another controller.
+    It closes over ``origin`` so that numba loads no callback from disk that was compiled with another controller.
     """
 
     def act(model: Any, data: Any) -> None:

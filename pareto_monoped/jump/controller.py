@@ -1,11 +1,8 @@
-"""The virtual controller and the bookkeeping of one jump, compiled by numba.
+"""The virtual controller and the bookkeeping of one jump, compiled by numba, which importing this module imports.
 
-``control`` is called at the start of every step. It books the step just made, ends a jump that is over, and sets the
-torques of the next step. Everything it knows about a jump besides positions and speeds is in one
-``controller_record.RECORD``, which ``callback`` keeps in the user data of the simulation.
-
-Importing this module imports numba, so import it where a simulation starts. All constants stay in this file because
-numba recompiles a function only if its own file changes, or the type of an argument, such as the record.
+``control`` is called at the start of every step. Everything it knows about a jump besides positions and speeds is in
+one ``controller_record.RECORD``, which ``callback`` keeps in the user data of the simulation. All constants stay in
+this file because numba recompiles a function only if its own file or the type of an argument changes.
 """
 
 import math
@@ -33,11 +30,8 @@ SPEED_LIMIT = 1e4  #: Speed of a joint or slide (rad/s, m/s) beyond which the si
 def control(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
     """Book the last step of a jump, end the jump if it is over, and set the torques of its next step.
 
-    Args:
-        q: joint positions at the start of the step, shape (nv,): slides (x if the base slides, z), hip, knee.
-        v: joint speeds, shape (nv,).
-        ctrl: torques of hip and knee, shape (2,); written.
-        jump: a ``RECORD``; written.
+    ``q`` and ``v``, shape (nv,), are positions and speeds of slides (x if the base slides, z), hip and knee at the
+    start of the step. The torques ``ctrl`` of hip and knee and the ``RECORD`` are written.
     """
     if jump.stages > 1.0:
         # A Runge-Kutta integrator calls once per stage; the torque of the first stage is held.
@@ -246,16 +240,9 @@ def _command(wanted: tuple[float, float], share: tuple[float, float], speed: tup
 def _virtual_leg(
     foot: tuple[float, float], shank: tuple[float, float], speed: tuple[float, float], jump: Any
 ) -> tuple[float, float]:
-    """Torques of virtual spring, damper and torsional spring (paper, section II-B), before any limit.
+    """Return the torques of virtual spring, damper and torsional spring (paper, section II-B), before any limit.
 
-    Args:
-        foot: vector (x, z) from hip to foot.
-        shank: vector (x, z) from knee to foot.
-        speed: of hip and knee.
-        jump: the record.
-
-    Returns:
-        Torques of hip and knee.
+    ``foot`` and ``shank`` are the vectors (x, z) from hip to foot and from knee to foot.
     """
     # F_l, tau_t, F_x, F_z and tau = J^T F of the paper; alpha is positive with the foot behind the base.
     # J: d rx / d hip = rz, d rz / d hip = -rx; d rx / d knee = shank_z, d rz / d knee = -shank_x.
@@ -314,10 +301,7 @@ def _delivered(torque: float, speed: float, jump: Any, joint: int) -> float:
 
 @compiled
 def _book(jump: Any, speed: tuple[float, float]) -> None:
-    """Add up the step just made.
-
-    Work is torque times the mean of the speeds at both ends of the step, or times the speed at its start.
-    """
+    """Add up the step just made: its work is torque times the mean speed of the step, or the speed at its start."""
     timestep = jump.timestep_s
     for joint in range(2):
         torque, start = jump.motor_torque_n_m[joint], jump.speed_rad_per_s[joint]
@@ -341,13 +325,12 @@ def _book(jump: Any, speed: tuple[float, float]) -> None:
 
 @compiled
 def _loads(v: Floats, jump: Any) -> None:
-    """Loads in the step just made, from its mean acceleration, by Newton's and Euler's laws of the planar leg.
+    """Book the loads in the step just made, from its mean acceleration, by Newton's and Euler's laws of the planar leg.
 
-    The floor's force accelerates the whole robot. An end stop has what is left of the moment about its joint of all
-    that hangs below it, less those of actuator, floor and viscous friction; Coulomb friction is counted with the stop.
-    A gearbox transmits the motor's torque less what accelerates the rotor, and the chain transmits the knee's torque
-    less what accelerates everything before its sprocket. On a vertical guide the floor's force has an unknown part in
-    x, which is left out.
+    The floor's force accelerates the whole robot. An end stop takes the moment about its joint of all that hangs below
+    it, less the torques of actuator, floor and viscous friction; Coulomb friction is counted with the stop. A gearbox
+    transmits the motor's torque less what accelerates the rotor; the chain transmits the knee's torque less what
+    accelerates everything before its sprocket. On a vertical guide the floor's force in x is unknown and left out.
     """
     nv, timestep = v.shape[0], jump.timestep_s
     hip, knee = (jump.directions[0], jump.directions[1]), (jump.directions[2], jump.directions[3])

@@ -1,7 +1,7 @@
 """What the controller knows about one jump: settings, robot, memory and measures, as one record of numbers.
 
-A measure that the record holds under its own name, or with "hip" or "knee" left out of the name of a pair, is taken
-from here as it is (``jump.evaluate``). Importing this module does not import numba, unlike the controller.
+``jump.evaluate`` takes a measure from here if the record holds it under its own name, or, as a pair, without "hip" or
+"knee". Unlike the controller, this module does not import numba.
 """
 
 import numpy as np

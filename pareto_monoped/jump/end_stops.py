@@ -2,10 +2,8 @@
 
 An ``EndStop`` becomes a joint limit of MuJoCo (``model.spring_fields``). Let u be the compression over the full width
 w, D the impedance, and A the joint's inverse inertia at the zero pose. In a slow compression the stop pushes back with
-the torque k w u^3 (1 - D) / (1 - D u). Its damping is c u (1 - D) / (1 - D u), and it adds the virtual inertia
-D u / (1 - D u) / A. Beyond w, damping and virtual inertia stay as at w, and the torque grows in proportion.
-
-How an impact leaves an end stop, compiled by numba. Importing this module imports numba.
+the torque k w u^3 (1 - D) / (1 - D u). Its damping is c u (1 - D) / (1 - D u), and it adds the virtual inertia D u / (1
+- D u) / A. Beyond w, damping and virtual inertia stay as at w, and the torque grows in proportion.
 """
 
 import functools
@@ -40,10 +38,9 @@ def end_stops(robots: RobotArrays, joints: Joints) -> EndStops:
 
 @functools.lru_cache(maxsize=16)
 def simulated(stop: JointStop) -> EndStop:
-    """The end stop that behaves like a part.
+    """Return the end stop that behaves like a part: its slow torque is the least-squares fit over the bumper's travel.
 
-    Over the travel of the bumper, its slow torque is as close to that of the part as can be, by least squares. Its
-    damping gives back the share of an impact's energy that the elastomer does (ISO 4662).
+    Its damping gives back the share of an impact's energy that the elastomer does (ISO 4662).
     """
     beyond = np.linspace(0.0, stop.travel_rad, 201)
     soft = EndStop(
@@ -94,15 +91,9 @@ def _deceleration(
 
 @compiled
 def rebound(speed: float, width: float, full: float, stiffness: float, damping: float, inertia: float) -> float:
-    """Speed in rad/s at which a free inertia leaves a stop that it met at a speed, by Runge and Kutta's method.
+    """Return the speed at which a free inertia leaves a stop that it met at ``speed``, by Runge and Kutta's method.
 
-    Args:
-        speed: of the inertia when it meets the stop, in rad/s.
-        width: of the stop, in rad.
-        full: its impedance at its full width.
-        stiffness: in N m/rad.
-        damping: in N m s/rad.
-        inertia: in kg m2.
+    All quantities are in SI units; ``full`` is the impedance at the full ``width``.
     """
     r, v = 0.0, speed
     h = 0.005 * width / speed

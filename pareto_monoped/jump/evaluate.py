@@ -61,16 +61,11 @@ class Evaluations(JumpMeasures):
 
 
 class Evaluator:
-    """Evaluates designs with the actuators of one kit of motors, or of one of several, under one calibration.
+    """Evaluates designs with the actuators of one or several kits of motors, under one calibration, on ``workers``
+    threads.
 
     To the last bit, the result of a design does not depend on the rest of the batch, its order or the number of
-    workers.
-
-    Attributes:
-        actuator_map: ratio -> lightest actuator of both joints or of each, with the first or only kit of motors.
-        actuator_maps: of every kit.
-        calibration: the jump model.
-        workers: threads.
+    workers. ``actuator_map`` is of the first kit, ``actuator_maps`` of every kit.
     """
 
     executor: Executor | None = None  #: what shares out the jumps, see ``jump.shared``; None: these threads do them all
@@ -91,12 +86,10 @@ class Evaluator:
     def __call__(
         self, designs: ArrayLike, motors: ArrayLike | None = None, *, variations: Variations | None = None
     ) -> Evaluations:
-        """Jump with each design.
+        """Jump with each design, shape (n, 7) or (n, number of variables).
 
-        Args:
-            designs: shape (n, 7) or (n, number of variables), see ``design.complete``.
-            motors: which of ``actuator_maps`` each design is built with, shape (n,); the first if None.
-            variations: how each robot departs from its design; its parts carry as much as designed. None: not at all.
+        ``motors`` has the row of ``actuator_maps`` for each design, shape (n,); None means the first. Robots that
+        depart from their designs by ``variations`` have parts that carry as much as designed.
         """
         values = np.atleast_2d(complete(designs))
         table, reasons = _Table(len(values)), _nonsense(values)
@@ -139,16 +132,9 @@ def _alike(robots: Mapping[int, RobotArrays]) -> list[list[int]]:
 
 
 def evaluate_robots(robots: RobotArrays, control: Floats, calibration: Calibration, workers: int = 1) -> Evaluations:
-    """Jump with robots that are already built.
+    """Jump with n built robots, each with its control (see ``design.complete_control``).
 
-    Args:
-        robots: n robots.
-        control: of each, see ``design.complete_control``.
-        calibration: the jump model.
-        workers: threads.
-
-    Returns:
-        Without the measures of strength, which are NaN: robots alone do not say which gearboxes they have.
+    The measures of strength are NaN, because robots alone do not say which gearboxes they have.
     """
     table = _Table(len(robots))
     _jump(robots, complete_control(control), calibration, workers, table, np.arange(len(robots)))

@@ -1,7 +1,7 @@
-"""The course of many jumps in a few frames each: what an animation or a chart over time needs.
+"""The course of many jumps in a few frames each, for an animation or a chart over time.
 
-The jumps are those of ``population``, stepped one step at a time, and read from the controller's records. A trace of
-``jump.single`` has more columns and every step, and takes thirty times as long.
+Batches are stepped one step at a time and read from the controller's records. A trace of ``jump.single`` has more
+columns and every step, and takes thirty times as long.
 """
 
 from collections.abc import Mapping
@@ -47,10 +47,10 @@ class Recording:
 
 
 def frame_steps(lift_off_step: int, last_step: int, frames: int) -> NDArray[np.intp]:
-    """Which steps are kept: two thirds of them before lift-off, when most of the motion takes place.
+    """Return which steps are kept: two thirds of them before lift-off, when most of the motion takes place.
 
-    The steps between two frames are equal in number before lift-off, and again after it, except at the first and the
-    last frame. Equal steps have small differences, which ``report.jump_packing`` makes use of.
+    Before lift-off and after it, frames lie equally many steps apart except at the first and last frame, which
+    ``report.jump_packing`` makes use of.
     """
     stance = 2 * frames // 3
     before = max(-(-lift_off_step // (stance - 1)), 1)
@@ -62,17 +62,9 @@ def frame_steps(lift_off_step: int, last_step: int, frames: int) -> NDArray[np.i
 def recordings(
     robots: RobotArrays, control: Floats, calibration: Calibration, frames: int, workers: int = 1
 ) -> list[Recording | None]:
-    """Jump with robots that can stand, and keep a few frames of each jump.
+    """Jump with robots that can stand, and keep at most ``frames`` frames (at least 4) of each jump.
 
-    Args:
-        robots: n robots.
-        control: of each, see ``design.complete_control``.
-        calibration: the jump model.
-        frames: how many, at least 4; a jump of fewer steps has fewer.
-        workers: threads.
-
-    Returns:
-        One per robot, in their order; None for a jump that does not reach its apex.
+    The list has one recording per robot, in their order; None for a jump that does not reach its apex.
     """
     result: list[Recording | None] = []
     control = complete_control(control)

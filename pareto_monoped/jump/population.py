@@ -49,8 +49,7 @@ class Population:
     def run(self) -> None:
         """Step all jumps to their end; a jump in which MuJoCo raises an error ends as diverged.
 
-        Raises:
-            SimulationError: MuJoCo did not call the controller; without it no jump would ever end.
+        Without a call of the controller no jump would ever end, so that raises ``SimulationError``.
         """
         from mujoco import batch
 
@@ -96,15 +95,9 @@ def prepare(
     threads: int = 1,
     variations: Variations | None = None,
 ) -> Population:
-    """A population at rest in its start pose.
+    """Return a population of n robots that can stand, at rest in their start pose, stepped by ``threads`` threads.
 
-    Args:
-        robots: n robots that can stand.
-        control: of each, see ``design.complete_control``.
-        pose: their start pose.
-        calibration: the jump model.
-        threads: number of threads that step the simulations.
-        variations: what of the robots' variations ``robots`` and ``control`` do not show; None without any.
+    ``robots`` and ``control`` are varied already; the rest of ``variations`` is applied here.
     """
     import mujoco
     from mujoco.batch import Batch
@@ -130,7 +123,7 @@ def prepare(
 
 
 def _component(batch: Any, component: Any) -> Floats:
-    """A view of one component of all simulations' states, shape (n, size of the component).
+    """Return a view of one component of all simulations' states, shape (n, size of the component).
 
     ``batch.bind`` returns the same, but creates a costly ``MjData`` only to find the shape. A state is the
     ``mjSTATE_INTEGRATION`` of its simulation (documentation of ``mujoco.batch``), with its components in the order of
@@ -152,13 +145,7 @@ def _template(calibration: Calibration, stops: EndStops) -> Any:
 
 
 def first_records(robots: RobotArrays, control: Floats, calibration: Calibration) -> Records:
-    """The controller's records before the first step, one per jump, shape (n,) of ``RECORD``.
-
-    Args:
-        robots: n robots.
-        control: of each, see ``design.complete_control``.
-        calibration: the jump model.
-    """
+    """Return the controller's records before the first step, one per jump, shape (n,) of ``RECORD``."""
     from pareto_monoped.jump import controller
 
     drive, gate, simulation = calibration.drive, calibration.gate, calibration.simulation

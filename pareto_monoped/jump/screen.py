@@ -1,8 +1,8 @@
-"""A screen before the audit: one coarse jump that shows of most designs that their audit would pass.
+"""A screen before the audit: one coarse jump shows that most designs would pass their audit.
 
-The jump has twice the step, and the design is perturbed. Its height, energy and energy balance take in, all at once,
-what the audit measures one after the other, and the error of a step of first order is twice as large. Where even this
-jump is close to the one evaluated, an audit finds nothing. The others are audited.
+The jump has twice the step, and the design is perturbed: together this takes in what the audit measures one by one, and
+first-order errors of the step are twice as large. Where even this jump is close to the one evaluated, an audit finds
+nothing.
 """
 
 from concurrent.futures import Executor
@@ -25,9 +25,10 @@ from pareto_monoped.measures import ScreenMeasures
 from pareto_monoped.robot.population import robot_arrays
 
 CLEAR: dict[str, float] = {"half_step_height_m": 0.5, "half_step_energy": 1.5, "energy_balance_error": 0.5}
-"""Shares of the audit's limits that a coarse jump may reach if its design needs no audit. Our own choice, by
-measurement (``benchmarks/audit_time.py``). Energy has more room: where each step is a control period, the period
-doubles, too, which changes the energy by half a percent and more, smoothly."""
+"""Shares of the audit's limits that a coarse jump may reach if its design needs no audit. Our own choice, measured by
+``benchmarks/audit_time.py``. Energy has more room, as a doubled control period changes it by half a percent,
+smoothly.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,7 +51,7 @@ class Screened(ScreenMeasures):
 
 
 def coarser(calibration: Calibration) -> Calibration | None:
-    """The calibration with twice its step; None where one coarse jump does not tell enough, or cannot be made.
+    """Return the calibration with twice its step; None where one coarse jump does not tell enough, or cannot be made.
 
     The control period stays if it has an even number of steps. Otherwise it doubles, too. A gate that switches the
     whole torque from step to step needs an audit of every design: two jumps may agree by chance. The integrator RK4 has
@@ -79,16 +80,8 @@ def screened(
     executor: Executor | None = None,
     seed: int = 0,
 ) -> Screened:
-    """Compare the jumps of designs with coarse ones. To the last bit, no design's result depends on the others.
-
-    Args:
-        designs: shape (n, number of variables).
-        actuator_map: the gearboxes.
-        calibration: the jump model.
-        known: the jumps of the designs under it.
-        workers: threads.
-        executor: does the jumps in their place.
-        seed: of the perturbations.
+    """Compare the ``known`` jumps of designs with coarse ones. To the last bit, no design's result depends on the
+    others.
     """
     if executor is not None and len(designs):
         text = setup_text([actuator_map], calibration)

@@ -1,7 +1,6 @@
-"""Jumps that an executor shares out: here are both sides, the evaluator that asks and the function that answers.
+"""Both sides of jumps that an executor shares out: the evaluator that asks and the function that answers.
 
-What jumps are simulated with travels as JSON text of every value, as studies store it. A worker reads it once, builds
-the maps and keeps them.
+What decides jumps travels as JSON text, as studies store it. A worker reads it once, builds the maps and keeps them.
 """
 
 import json
@@ -30,7 +29,7 @@ _SOURCE = "a task's setup"
 
 
 def setup_text(maps: Sequence[Maps], calibration: Calibration) -> str:
-    """Everything that decides jumps as JSON text, which ``built`` reads back.
+    """Return everything that decides jumps as JSON text, which ``built`` reads back.
 
     Raises:
         InputError: a map that was built with settings of its own, which no worker knows.

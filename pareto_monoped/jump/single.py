@@ -1,7 +1,7 @@
 """One jump, step by step: the trace, which a batch does not record.
 
-The loop runs plain ``mj_step`` on the exported MJCF with the torques of the compiled controller. It makes the same jump
-as the batch, to the last bit.
+The loop runs plain ``mj_step`` on the exported MJCF with the compiled controller, and makes the batch's jump to the
+bit.
 """
 
 from collections.abc import Iterator
@@ -47,14 +47,7 @@ class JumpResult:
 
 
 def simulate(design: Design, maps: Maps, calibration: Calibration, *, trace: bool = False) -> JumpResult:
-    """Jump once.
-
-    Args:
-        design: the design.
-        maps: the gearboxes of both joints, or of hip and knee.
-        calibration: the jump model.
-        trace: whether to record every step.
-    """
+    """Jump once, with the gearboxes of both joints or of hip and knee; ``trace`` records every step."""
     values = design.as_array()[None, :]
     evaluations = Evaluator(maps, calibration)(values)
     rows: dict[str, Floats] = {}

@@ -3,8 +3,6 @@
 A robot that was built has other masses, motors and springs than its model. Its controller does not know them: the term
 m g of the virtual leg keeps the nominal mass. Its links are measured, so the controller knows their true lengths. It
 starts in the balanced pose of its true masses and lengths, on a foot that is compressed as nominal.
-
-Rows of a struct of arrays.
 """
 
 from collections.abc import Sequence
@@ -94,12 +92,7 @@ T = TypeVar("T", bound="DataclassInstance")
 
 
 def take(record: T, rows: NDArray[np.intp]) -> T:
-    """A copy of a frozen dataclass whose fields are arrays or tuples with one row per item, with only some rows.
-
-    Args:
-        record: the dataclass; every array and tuple has n rows, anything else is the same for all items.
-        rows: indices of the rows to keep, in this order.
-    """
+    """Return a copy of a frozen dataclass with some rows, in their order, of every array and tuple; the rest is shared."""
     kept: dict[str, Any] = {}
     for field in fields(record):
         values = getattr(record, field.name)
@@ -111,10 +104,8 @@ def take(record: T, rows: NDArray[np.intp]) -> T:
 
 
 def joined(records: Sequence[T]) -> T:
-    """One record with the rows of all, see ``take``; a single record stays as it is.
-
-    Args:
-        records: at least one; what is the same for all items must be the same in all of them.
+    """Return one record with the rows of all, see ``take``; what is not an array or tuple must be the same in all of
+    them.
     """
     if len(records) == 1:
         return records[0]
