@@ -93,7 +93,7 @@ _HOME = {name: home for home, names in _HOMES.items() for name in names}
 if not TYPE_CHECKING:  # to a type checker every misspelt name would be there
 
     def __getattr__(name: str) -> Any:
-        """A public name, imported now that it is used (PEP 562)."""
+        """Return a public name, imported now that it is used (PEP 562)."""
         if name not in _HOME:
             raise AttributeError(f"module 'pareto_monoped' has no attribute {name!r}")
         from importlib import import_module
@@ -104,5 +104,5 @@ if not TYPE_CHECKING:  # to a type checker every misspelt name would be there
 
 
 def __dir__() -> list[str]:
-    """The public names."""
+    """Return the public names."""
     return sorted(__all__)

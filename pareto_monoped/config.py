@@ -106,7 +106,7 @@ def read_json(path: Path) -> Any:
 
 
 def _depth_exceeds(text: str, levels: int) -> bool:
-    """Whether valid JSON is nested more deeply than that many levels."""
+    """Return whether valid JSON is nested more deeply than that many levels."""
     brackets = _NO_BRACKETS.sub("", _TEXTS.sub("", text))
     for _ in range(levels):
         if not brackets:
@@ -116,7 +116,7 @@ def _depth_exceeds(text: str, levels: int) -> bool:
 
 
 def read_shipped(name: str, *, what: str, error: type[InputError] = InputError) -> dict[str, Any]:
-    """The tables of a TOML file in the package's ``data`` folder, with arguments as for ``read_toml``."""
+    """Return the tables of a TOML file in the package's ``data`` folder, with arguments as for ``read_toml``."""
     with resources.as_file(resources.files("pareto_monoped") / "data" / name) as path:
         return read_toml(path, what=what, error=error)
 
@@ -142,7 +142,7 @@ _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")  #: What pydantic 
 
 
 def _line(kind: type, problem: ValidationError) -> str:
-    """The first error in one line. Pydantic lists them in the order of the fields, and unknown keys behind them."""
+    """Return the first error in one line; pydantic lists errors in the order of the fields, unknown keys behind them."""
     errors = problem.errors(include_url=False)
     first = errors[0]
     if first["type"] == "missing":  # an unknown key may be the missing one, misspelt
@@ -194,7 +194,7 @@ _KINDS = {
 
 
 def _allowed(problem: "ErrorDetails") -> str:
-    """What is allowed in place of a wrong value, in our words."""
+    """Return what is allowed in place of a wrong value, in our words."""
     kind = problem["type"]
     if kind in _ALLOWED:
         known = problem.get("ctx", {})

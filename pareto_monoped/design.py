@@ -172,7 +172,7 @@ def complete(designs: ArrayLike) -> NDArray[np.float64]:
 
 
 def complete_control(control: ArrayLike) -> NDArray[np.float64]:
-    """Values in the order of ``CONTROL``, shape (n, 6), from K, C and T, shape (n, 3), or from all of them."""
+    """Return values in the order of ``CONTROL``, shape (n, 6), from K, C and T, shape (n, 3), or from all of them."""
     values = np.atleast_2d(np.asarray(control, dtype=np.float64))
     missing = [DEFAULTS[name] for name in CONTROL[values.shape[1] :]]
     return np.concatenate([values, np.broadcast_to(missing, (len(values), len(missing)))], axis=1)
@@ -184,7 +184,7 @@ def columns(designs: ArrayLike, names: Sequence[str]) -> NDArray[np.float64]:
 
 
 def nonsense(name: str, value: float) -> str | None:
-    """What is wrong with a value that no design can mean; the paper's bounds play no part. None if it is one."""
+    """Return what is wrong with a value that no design can mean; the paper's bounds play no part. None if it is one."""
     if not np.isfinite(value):
         return complaint(name, float(value), "a finite number", "give a number")
     least = LEAST[NAMES.index(name)]
@@ -207,7 +207,7 @@ def _number(name: str, given: object) -> float:
 
 
 def _checked(kind: type[_T]) -> type[_T]:
-    """The class, with errors of ours for names that are unknown or missing, and for values that cannot be meant."""
+    """Wrap the class so that unknown or missing names and values that nobody can mean are our own errors."""
     made = kind.__init__
 
     @wraps(made)
@@ -250,11 +250,11 @@ class Design:
     start_height_m: float = BASE_START_HEIGHT_M
 
     def as_array(self) -> NDArray[np.float64]:
-        """The values in the order of ``NAMES``, shape (number of variables,)."""
+        """Return the values in the order of ``NAMES``, shape (number of variables,)."""
         return np.array([getattr(self, name) for name in NAMES], dtype=np.float64)
 
     def as_dict(self) -> dict[str, float]:
-        """The values by name: the paper's seven, and the optional ones that differ from their defaults."""
+        """Return the values by name: the paper's seven, and the optional ones that differ from their defaults."""
         values = {name: getattr(self, name) for name in NAMES}
         return {name: value for name, value in values.items() if value != DEFAULTS.get(name)}
 

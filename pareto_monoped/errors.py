@@ -100,12 +100,12 @@ _ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")  #: Where an object is in memory, a
 
 
 def complaint(quantity: str, value: object, allowed: str, cure: str) -> str:
-    """The message of an error in the first of the two forms above."""
+    """Return the message of an error in the first of the two forms above."""
     return f"{quantity} = {shown(value)}: must be {allowed}; {cure}"
 
 
 def shown(value: object) -> str:
-    """A value as a message shows it: without an address in memory, and a table or a large object by its kind alone."""
+    """Return a value as messages show it: without addresses in memory, and a table or a large object by its kind alone."""
     text = _ADDRESS.sub("", repr(value))
     large = len(text) > _SHOWN and not isinstance(value, str | list | tuple | dict)
     if large or "\n" in text:

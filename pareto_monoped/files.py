@@ -149,12 +149,12 @@ _REFUSALS = {
 
 
 def is_failure(error: OSError) -> bool:
-    """Whether the system is full or fails, rather than that what the user gave cannot be used."""
+    """Return whether the system is full or fails, rather than that what the user gave cannot be used."""
     return error.errno in _FAILURES
 
 
 def cure_of(error: OSError) -> str:
-    """What helps against an error of the system."""
+    """Return what helps against an error of the system."""
     number = error.errno or 0
     return (_FAILURES | _REFUSALS).get(number, "allow access to it, or give another")
 
@@ -163,7 +163,7 @@ ADRIFT = "working directory: has been deleted; change to a folder that exists"
 
 
 def is_adrift() -> bool:
-    """Whether the working directory is no more: names of files then lead nowhere, and no process can be started."""
+    """Return whether the working directory was deleted: names of files then lead nowhere, and no process can start."""
     try:
         os.getcwd()
     except FileNotFoundError:

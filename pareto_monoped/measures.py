@@ -61,7 +61,7 @@ class Measure:
         return self.label.removesuffix(f", {self.meaning}")
 
     def text(self, value: float) -> str:
-        """``value`` in the stored unit, as it is shown, such as "12.3 mm"."""
+        """Return ``value`` in the stored unit, as it is shown, such as "12.3 mm"."""
         return f"{value * self.scale:.{self.decimals}f} {self.shown_unit}".removesuffix(" 1")
 
 
@@ -76,7 +76,7 @@ def _row(
     short: str = "",
     **more: Any,
 ) -> Measure:
-    """Describe a measure, which is shown in its stored unit unless ``shown`` gives another unit and the factor to it."""
+    """Describe a measure, shown in its stored unit unless ``shown`` gives another unit and the factor to it."""
     shown_unit, scale = shown or (unit, 1.0)
     return Measure(
         name="",
@@ -355,17 +355,17 @@ def measure(name: str) -> Measure:
 
 
 def is_own(name: object) -> bool:
-    """Whether a measure is a function of the user's own, such as "own_landing_speed" for ``landing_speed``."""
+    """Return whether a measure is a function of the user's own, such as "own_landing_speed" for ``landing_speed``."""
     return isinstance(name, str) and _OWN.fullmatch(name) is not None
 
 
 def is_goal(name: object) -> bool:
-    """Whether a study can ask for a measure of that name."""
+    """Return whether a study can ask for a measure of that name."""
     return isinstance(name, str) and (name in GOAL_NAMES or is_own(name))
 
 
 def _own_measure(name: str) -> Measure:
-    """The measure that an own function is. Less is better; its unit is known only to the function."""
+    """Return the measure that an own function is. Less is better; its unit is known only to the function."""
     function = name.removeprefix(OWN)
     words = function.replace("_", " ").strip()
     return Measure(
@@ -382,12 +382,12 @@ def _own_measure(name: str) -> Measure:
 
 
 def is_robust(name: str) -> bool:
-    """Whether a measure is of many jumps under uncertainty."""
+    """Return whether a measure is of many jumps under uncertainty."""
     return name in _ROBUST
 
 
 def nominal(name: str) -> str:
-    """The measure of a single jump that a name is about: "height_m" for itself and for "height_m.p05"."""
+    """Return the measure of a single jump that a name is about: "height_m" for itself and for "height_m.p05"."""
     return name.partition(".")[0]
 
 

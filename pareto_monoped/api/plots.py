@@ -53,7 +53,7 @@ def plot_front(
     trials: bool = True,
     backend: Backend = "plotly",
 ) -> Any:
-    """The fronts of one study or several, with all feasible trials behind them.
+    """Return the fronts of one study or several, with all feasible trials behind them.
 
     Args:
         studies: one or several, drawn over each other.
@@ -97,7 +97,7 @@ def plot_front(
 
 
 def plot_actuators(*maps: ActuatorMap, backend: Backend = "plotly") -> Any:
-    """Mass of the lightest actuator over the gear ratio, for one motor or several.
+    """Return the mass of the lightest actuator over the gear ratio, for one motor or several.
 
     Args:
         maps: see ``actuator_map``.
@@ -134,7 +134,7 @@ def plot_actuators(*maps: ActuatorMap, backend: Backend = "plotly") -> Any:
 
 
 def plot_jump(trace: "DataFrame", *, backend: Backend = "plotly") -> Any:
-    """Heights, joint angles and motor torques of one jump over time.
+    """Return heights, joint angles and motor torques of one jump over time.
 
     Args:
         trace: see ``trace``.

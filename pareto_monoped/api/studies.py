@@ -58,7 +58,7 @@ class Picked:
     why: str  #: the reason in one sentence
 
     def __repr__(self) -> str:
-        """One line: the trial and the reason."""
+        """Return one line: the trial and the reason."""
         return f"Picked(trial={self.trial}, why={self.why!r})"
 
 
@@ -78,7 +78,7 @@ class StoredStudy:
     data: "StudyData"  #: everything that was read; its form may change between versions
 
     def __repr__(self) -> str:
-        """One line: name, place, trials and objectives."""
+        """Return one line: name, place, trials and objectives."""
         trials, state = len(self.data.trials), "finished" if self.finished else "not finished"
         names = ", ".join(self.study.objectives.names)
         return f"StoredStudy({self.study.name!r}, {str(self.path)!r}, {trials} trials, {state}, objectives {names})"
@@ -97,7 +97,7 @@ class StoredStudy:
         return self.data.meta.finished
 
     def front(self, objectives: Sequence[str] | None = None, *, include_ill_conditioned: bool = False) -> "DataFrame":
-        """The non-dominated feasible trials by the first objective, from its least value to its greatest.
+        """Return the non-dominated feasible trials by the first objective, from its least value to its greatest.
 
         Args:
             objectives: two or three measures, instead of the study's own.
@@ -167,7 +167,7 @@ class StoredStudy:
         return Picked(trial=found.trial, design=self.design(found.trial), row=self._row(found.trial), why=found.why)
 
     def design(self, trial: int) -> Design:
-        """The design of a trial.
+        """Return the design of a trial.
 
         Raises:
             SelectionError: no trial has this number.
@@ -175,7 +175,7 @@ class StoredStudy:
         return Design.from_array([self._row(trial)[name] for name in NAMES])
 
     def motors(self, trial: int) -> tuple[str, str]:
-        """Names of the motors of a trial's hip and knee, for ``simulate`` and ``build_robot``.
+        """Return names of the motors of a trial's hip and knee, for ``simulate`` and ``build_robot``.
 
         Raises:
             SelectionError: no trial has this number.
@@ -261,14 +261,14 @@ class StoredStudy:
 
 
 def _rows(designs: Any) -> Any:
-    """Designs, with the rows of the trials, which name their motors, in place of what ``pick`` returned."""
+    """Return designs, with the rows of the trials, which name their motors, in place of what ``pick`` returned."""
     if isinstance(designs, list | tuple):
         return [_rows(one) if isinstance(one, Picked) else one for one in designs]
     return designs.row if isinstance(designs, Picked) else designs
 
 
 def load_study(path: StrPath | StudyPlace) -> StoredStudy:
-    """The study in a database.
+    """Return the study in a database.
 
     Args:
         path: the database that ``run`` made: a file, or a server's address as text. To read a study file, use
@@ -289,27 +289,14 @@ def load_study(path: StrPath | StudyPlace) -> StoredStudy:
 
 
 def as_place(given: StrPath | StudyPlace, what: str = "path", *, allowed: str = "text or a path") -> StudyPlace:
-    """Where a study stands, from text that is a server's address, else from text or a path.
-
-    Raises:
-        InputError: it is neither.
-    """
+    """Return where a study stands, from text that is a server's address, else from text or a path."""
     if isinstance(given, StudyPlace) and not isinstance(given, Path):
         return given
     return place_of(given) if isinstance(given, str) and is_address(given) else as_path(given, what, allowed=allowed)
 
 
 def as_path(given: StrPath, what: str = "path", *, allowed: str = "text or a path") -> Path:
-    """A path from text or a path.
-
-    Args:
-        given: the path.
-        what: the argument that it is, for a message.
-        allowed: what may be given there.
-
-    Raises:
-        InputError: it is neither.
-    """
+    """Return a path from text or a path; else raise ``InputError`` with the argument ``what`` and what is ``allowed``."""
     try:
         path = Path(given)
     except TypeError:
@@ -330,11 +317,7 @@ def _ways(
     compromise: Sequence[float] | None,
     nearest: Mapping[str, float] | None,
 ) -> list[Chooser]:
-    """The ways to choose that are asked for.
-
-    Raises:
-        SelectionError: more than one, or an unknown one.
-    """
+    """Return the ways to choose that are asked for; more than one, or an unknown one, is a ``SelectionError``."""
     ways: list[Chooser] = []
     if by is not None:
         if not isinstance(by, str) or by not in ("knee", "tradeoff"):
@@ -375,12 +358,7 @@ def _conditions(
 
 
 def _known(what: str, values: Any) -> dict[str, float]:
-    """Numbers of known measures and variables.
-
-    Raises:
-        InputError: no mapping, or a value that is no number.
-        SelectionError: an unknown name.
-    """
+    """Return numbers of known measures and variables; raise ``InputError``, or ``SelectionError`` for an unknown name."""
     numbers = table_of(what, values)
     for name in numbers:
         if name not in CONDITION_NAMES and not is_own(name):

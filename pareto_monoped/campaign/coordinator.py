@@ -23,8 +23,9 @@ WORTH_S = 10.0
 """Time left above which a study is stopped and continued with more threads: our own choice, ten times what it takes."""
 _LISTEN_S = 0.1
 _SAME_S = 30.0
-"""Within which the same line about scheduler or workers is of the same event. Our own choice: studies hear of a worker
-that was killed within a second of each other, and of one that hangs once they have waited for it."""
+"""Within which equal lines about scheduler or workers mean one event: studies notice a lost worker within a second. Our
+own choice.
+"""
 _HELD_S = 3.0  #: How long to wait for the workers of a coordinator that was killed a moment ago: our own choice.
 
 
@@ -49,7 +50,7 @@ class Standing:
 
     @classmethod
     def of(cls, place: Place, stored: Stored) -> "Standing":
-        """The standing of a study that no worker has yet."""
+        """Return the standing of a study that no worker has yet."""
         known = {each.name: getattr(stored, each.name) for each in fields(stored) if each.name != "summary"}
         return cls(place=place, **known)
 
@@ -75,17 +76,12 @@ def run_campaign(
     changed: Changed,
     notify: Callable[[str], None],
 ) -> bool:
-    """Run every study that has not ended; returns whether all could, rather than being interrupted.
+    """Run every study that has not ended; return whether all could, rather than being interrupted.
 
-    A study that fails says so in its standing and does not stop the others. Results do not depend on ``cores``.
-
-    Args:
-        standings: of the studies, see ``standings_of``; they are brought up to date.
-        cores: threads of all studies together, or with ``scheduler`` how many run at a time; None: as many as this
-            machine has cores, or the scheduler's workers threads.
-        scheduler: address of a Dask scheduler whose workers simulate.
-        changed: called when a study has begun, stored a generation, or ended.
-        notify: called with a line for the user.
+    A study that fails says so in its standing and does not stop the others; ``standings`` are brought up to date, and
+    ``changed`` is called when one has begun, stored a generation, or ended. ``cores`` are the threads of all studies
+    together, or with ``scheduler`` (the address of a Dask scheduler) how many studies run at a time; None means all of
+    this machine or of the scheduler's workers. Results do not depend on it.
 
     Raises:
         InputError: the address is none, or Dask is not installed.
@@ -101,7 +97,7 @@ def run_campaign(
 
 
 def standings_of(places: Sequence[Place]) -> list[Standing]:
-    """How the studies of a campaign stand according to their databases."""
+    """Return how the studies of a campaign stand according to their databases."""
     return [Standing.of(place, stored_state(place)) for place in places]
 
 
@@ -177,7 +173,7 @@ class _Coordinator:
     def _widen(self) -> None:
         """Give idle cores to a study that still takes long: it stops, and goes on with twice as many threads or more.
 
-        Results do not depend on the number of threads. One at a time, so that no core is promised twice.
+        Only one study changes at a time, so that no core is promised twice.
         """
         if self.scheduler or self.waiting or not self.jobs or any(job.again_with for job in self.jobs):
             return
@@ -284,10 +280,7 @@ class _Coordinator:
 
 
 def _wait_for_release(standing: Standing) -> None:
-    """Wait until the worker of a coordinator that was killed a moment ago has ended.
-
-    If another program holds the study for longer, running it says so.
-    """
+    """Wait until the worker of a coordinator that was killed a moment ago has ended; running reports a longer hold."""
     end_s = time.monotonic() + _HELD_S
     while holder(standing.place.db) is not None and time.monotonic() < end_s:
         time.sleep(0.05)

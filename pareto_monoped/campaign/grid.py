@@ -166,8 +166,7 @@ def load_campaign(path: Path) -> Campaign:
     Raises:
         StudyError: no readable TOML, an unknown key, a wrong type, a value named twice, too many studies, or a
             combination that no study file could have.
-        MotorError: an unknown name of a motor.
-        CalibrationError: an unknown name of a calibration.
+        MotorError, CalibrationError: an unknown name.
     """
     source = f"campaign file {str(path)!r}"
     raw = read_toml(path, what="campaign file", error=StudyError)

@@ -1,7 +1,4 @@
-"""The report of a campaign: one self-contained page in the looks of the report of a study.
-
-Every text from a file or a database is escaped here.
-"""
+"""The report of a campaign: one self-contained page, in which every text from a file or a database is escaped."""
 
 import json
 import math

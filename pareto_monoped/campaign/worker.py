@@ -1,7 +1,4 @@
-"""What a process of a campaign does: runs a study, and says how it goes. It ends with its coordinator.
-
-Everything that a study has acknowledged is on disk by then.
-"""
+"""The process of a campaign that runs a study and reports its progress, and ends with its coordinator."""
 
 import warnings
 from contextlib import nullcontext
@@ -43,17 +40,10 @@ class Ended:
 
 
 def run_study(study: Study, db: Path, threads: int, scheduler: str | None, seat: int) -> Ended:
-    """Run a study or continue it; it can stop after each generation.
+    """Run a study or continue it, by threads or the workers of a scheduler; it can stop after each generation.
 
-    Args:
-        study: the definition.
-        db: its database.
-        threads: that simulate.
-        scheduler: address of a Dask scheduler whose workers simulate in their place; None: they do.
-        seat: tells studies that run side by side apart, see ``compute.crew.Crew``.
-
-    Raises:
-        ParetoMonopedError: see ``study.run.run``.
+    ``seat`` tells studies that run side by side apart, see ``compute.crew.Crew``; errors are those of
+    ``study.run.run``.
     """
     from pareto_monoped.analysis.remarks import remarks
     from pareto_monoped.jump.peers import cluster

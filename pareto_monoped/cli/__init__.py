@@ -55,7 +55,7 @@ class _Commands(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """The command, or an error that names those with a similar name."""
+        """Return the command, or an error that names those with a similar name."""
         if args and args[0] not in _COMMANDS and not args[0].startswith("-"):
             near = difflib.get_close_matches(args[0], _COMMANDS, n=2)
             cure = f"did you mean {' or '.join(map(repr, near))}?" if near else f"must be one of {', '.join(_COMMANDS)}"

@@ -190,7 +190,7 @@ def _refuse_mixed_sources(
 
 
 def _without(dropped: set[str], job: "Job") -> "Job":
-    """The same job without some formats, whatever formats it names."""
+    """Return the same job without some formats, whatever formats it names."""
     return replace(job, formats=tuple(name for name in job.formats if name not in dropped))
 
 
@@ -259,7 +259,7 @@ def _many(jobs: "list[Job]", workers: int, place: Where) -> None:
 
 
 def _duration(seconds: float) -> str:
-    """A time to wait, in words: ``50 s``, ``12 min`` or ``3 h 05 min``."""
+    """Return a time to wait, in words: ``50 s``, ``12 min`` or ``3 h 05 min``."""
     if seconds < 99.5:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60.0)

@@ -164,7 +164,7 @@ _CURES = {
 
 
 def _design(case: str, changes: tuple[str, ...]) -> Design:
-    """The case with its changes."""
+    """Return the case with its changes."""
     numbers = {}
     for change in changes:
         name, equals, text = change.partition("=")
@@ -181,7 +181,7 @@ def _design(case: str, changes: tuple[str, ...]) -> Design:
 
 
 def _outside(design: Design) -> list[str]:
-    """What to note of values outside their bounds: a line for the paper's variables, and one for the others."""
+    """Return what to note of values outside their bounds: a line for the paper's variables, and one for the others."""
     found: dict[str, list[str]] = {}
     for variable in VARIABLES:
         value = getattr(design, variable.name)
@@ -193,12 +193,12 @@ def _outside(design: Design) -> list[str]:
 
 
 def _plain(value: float) -> float | None:
-    """The value as a JSON number; None, which is null in JSON, if it is not finite."""
+    """Return the value as a JSON number; None, which is null in JSON, if it is not finite."""
     return value if math.isfinite(value) else None
 
 
 def _motors(hip: str, knee: str) -> dict[str, str]:
-    """The motors as they were named: one for both joints, or one of each."""
+    """Return the motors as they were named: one for both joints, or one of each."""
     return {"motor": hip} if hip == knee else {"hip_motor": hip, "knee_motor": knee}
 
 
@@ -216,7 +216,7 @@ def _report(result: "JumpResult", motors: dict[str, str], maps: "JointMaps") -> 
 
 
 def _add_gear_life(report: dict[str, Any], result: "JumpResult", maps: "JointMaps") -> list[str]:
-    """How many jumps the gears last that strike their stops in each; with advice if that is too few."""
+    """Return how many jumps gears that strike their stops in each last; with advice if that is too few."""
     import numpy as np
 
     from pareto_monoped.strength.factors import gear_life

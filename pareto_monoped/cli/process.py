@@ -1,9 +1,7 @@
 """The process of a command: standard streams that always work, signals that end it in order, and a quick end.
 
-The one place that turns whatever a command raises into one line on stderr and an exit code.
-
-Code below the command line raises its own errors (``errors``), which say file, place and cure. What else comes up here
-is an error of the system, or a fault of this program; both end in one line as well.
+Whatever a command raises becomes one line on stderr and an exit code here. Code below the command line raises its own
+errors (``errors``); what else comes up is an error of the system or a fault of this program.
 """
 
 import atexit
@@ -32,15 +30,15 @@ _INTERRUPTED = 130  #: 128 and the number of SIGINT, as shells have it.
 
 @contextmanager
 def owned() -> Iterator[Callable[[int], NoReturn]]:
-    """Take over the process for one command; yields the function that ends it with an exit code.
+    """Take over the process for one command; yield the function that ends it with an exit code.
 
-    - Closed standard streams lead nowhere. Otherwise the next file that is opened would take their place, and what is
-      printed would be written into it.
+    - Closed standard streams lead nowhere. Otherwise what is printed would be written into the next file that is
+      opened.
     - Text that the streams' encoding lacks is written as escapes.
-    - SIGTERM and SIGHUP are an interrupt, as Ctrl-C is, so that no temporary file stays. A SIGHUP that the process
-      began with ignored (nohup) stays ignored.
-    - At the end, handlers of other modules run, but Python does not take its modules and their objects apart, which
-      takes longer than many commands.
+    - SIGTERM and SIGHUP are an interrupt, as Ctrl-C is, so that no temporary file stays. An ignored SIGHUP (nohup)
+      stays ignored.
+    - At the end, handlers of other modules run, but Python does not take its modules apart, which takes longer than
+      many commands.
     """
     _open_streams()
     for stream in (sys.stdout, sys.stderr):
@@ -104,7 +102,7 @@ _LONGEST = 1200
 
 
 def told(error: BaseException) -> tuple[str, int]:
-    """The line on stderr and the exit code for what a command raised."""
+    """Return the line on stderr and the exit code for what a command raised."""
     if isinstance(error, click.exceptions.Abort | KeyboardInterrupt):
         return "interrupted", 130
     if isinstance(error, click.ClickException):
@@ -127,7 +125,7 @@ def told(error: BaseException) -> tuple[str, int]:
 
 
 def _of_click(error: click.ClickException) -> str:
-    """Its message, in the words of this program."""
+    """Return its message, in the words of this program."""
     if isinstance(error, click.NoSuchOption):
         # The first is the most similar.
         near = difflib.get_close_matches(error.option_name, error.possibilities or (), n=1)
@@ -136,7 +134,7 @@ def _of_click(error: click.ClickException) -> str:
 
 
 def _of_system(error: OSError) -> tuple[str, int]:
-    """An error of the system that no other code has answered."""
+    """Return an error of the system that no other code has answered."""
     if error.filename is None and is_adrift():
         return f"error: {ADRIFT}", 2
     files = [os.fsdecode(part) for part in (error.filename, error.filename2) if isinstance(part, str | bytes)]
@@ -146,7 +144,7 @@ def _of_system(error: OSError) -> tuple[str, int]:
 
 
 def _line(text: str) -> str:
-    """A message on one line, of bounded length and without anything that a terminal would obey."""
+    """Return a message on one line, of bounded length and without anything that a terminal would obey."""
     line = name(" ".join(text.splitlines()).strip())
     if len(line) <= _LONGEST:
         return line
@@ -154,7 +152,7 @@ def _line(text: str) -> str:
 
 
 def _place(error: BaseException) -> str:
-    """Where in this package an error came up."""
+    """Return where in this package an error came up."""
     package = Path(__file__).parent.parent
     for frame in reversed(traceback.extract_tb(error.__traceback__)):
         path = Path(frame.filename)

@@ -236,7 +236,7 @@ def sensitivity(
 
 
 def _shown(study: "Study") -> "list[Measure]":
-    """The height, and the energy that is an objective of the study."""
+    """Return the height, and the energy that is an objective of the study."""
     from pareto_monoped.measures import ENERGIES, measure, nominal
 
     objectives = [nominal(name) for name in study.objectives.names]

@@ -19,8 +19,8 @@ _CHOOSERS = "--knee, --tradeoff, --weights, --compromise, --nearest, --trial"
 def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the options that select one design; ``command`` receives them as the keyword ``selector``.
 
-    Conditions combine; more than one way to choose is a usage error. Without any of them, ``selector`` is None, which
-    ``required`` refuses.
+    Conditions combine; more than one way to choose is a usage error. Without any, ``selector`` is None, see
+    ``required``.
     """
 
     @click.option("--min-height", type=float, metavar="M", help="Least energy for a jump of at least M metres.")
@@ -112,7 +112,7 @@ def _selector(
 
 
 def required(selector: "Selector | None") -> "Selector":
-    """The selector; without one, a usage error that names the options."""
+    """Return the selector; without one, a usage error that names the options."""
     if selector is None:
         raise click.UsageError(
             "no selector given: must be one of --min-height M, --max-energy J, --limit NAME=X, --min NAME=X, "
@@ -129,7 +129,7 @@ def _conditions(
     least: Sequence[str],
     most: Sequence[str],
 ) -> "tuple[Condition | MaxEnergy, ...]":
-    """All conditions, in the order of the options."""
+    """Return all conditions, in the order of the options."""
     from pareto_monoped.pareto.pick import at_or_better
     from pareto_monoped.pareto.selectors import Condition, MaxEnergy
 
@@ -173,7 +173,7 @@ def _wish(text: str) -> dict[str, float]:
 
 
 def _pair(option: str, text: str, known: Sequence[str]) -> tuple[str, float]:
-    """A name and a number from NAME=X."""
+    """Return a name and a number from NAME=X."""
     name, _, value = text.partition("=")
     from pareto_monoped.measures import is_own, near_measures
 
@@ -187,14 +187,14 @@ def _pair(option: str, text: str, known: Sequence[str]) -> tuple[str, float]:
 
 
 def _directed() -> list[str]:
-    """Measures of which more or less is better."""
+    """Return measures of which more or less is better."""
     from pareto_monoped.measures import GOAL_NAMES, measure
 
     return [name for name in GOAL_NAMES if measure(name).direction is not None]
 
 
 def _stored() -> Sequence[str]:
-    """Everything that a condition may be about."""
+    """Return everything that a condition may be about."""
     from pareto_monoped.pareto.selectors import CONDITION_NAMES
 
     return CONDITION_NAMES

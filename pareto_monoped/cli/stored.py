@@ -1,11 +1,4 @@
-"""Commands that look after a study database: ``verify`` and ``repair``.
-
-Command ``dashboard``: optuna-dashboard on a study, for this machine only and without leave to write.
-
-Command ``report``: one HTML page of one or more studies, and figures for print.
-
-``trials``: every trial of a study with all its measures, for other programs.
-"""
+"""Commands on a study database: ``verify``, ``repair``, ``dashboard``, ``report`` and ``trials``."""
 
 import errno
 import webbrowser
@@ -117,7 +110,7 @@ def dashboard(db: StudyPlace, port: int | None, browse: bool) -> None:
 
 
 def _application(db: StudyPlace) -> Any:
-    """The dashboard's WSGI application of a study."""
+    """Return the dashboard's WSGI application of a study."""
     from optuna_dashboard import wsgi
 
     from pareto_monoped.storage.place import storage_of
@@ -126,7 +119,7 @@ def _application(db: StudyPlace) -> Any:
 
 
 def _reading(application: Any) -> Any:
-    """The application for requests that read; others are answered with a refusal, which the page shows."""
+    """Return the application for requests that read; others are answered with a refusal, which the page shows."""
 
     def answered(environment: dict[str, Any], start: Any) -> Any:
         if environment["REQUEST_METHOD"] in ("GET", "HEAD"):
@@ -138,11 +131,7 @@ def _reading(application: Any) -> Any:
 
 
 def _server(application: Any, port: int | None) -> "WSGIServer":
-    """A server on the loopback, at the port asked for.
-
-    Raises:
-        InputError: that port is in use, or not allowed.
-    """
+    """Return a server on the loopback; raise ``InputError`` for a port that is in use or not allowed."""
     from socketserver import ThreadingMixIn
     from wsgiref.simple_server import WSGIRequestHandler, WSGIServer, make_server
 

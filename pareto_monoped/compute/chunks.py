@@ -49,7 +49,7 @@ _paces: WeakKeyDictionary[Executor, dict[object, Pace]] = WeakKeyDictionary()
 
 
 def pace_of(executor: Executor, *work: object) -> Pace:
-    """The pace of some work on an executor, which later calls with the same work go on with."""
+    """Return the pace of some work on an executor, which later calls with the same work go on with."""
     return _paces.setdefault(executor, {}).setdefault(work, Pace())
 
 
@@ -104,7 +104,7 @@ def in_turn(work: Callable[[Item], T], items: Iterable[Item], at_once: int) -> G
 
 
 def timed(work: Callable[..., T], *arguments: Any) -> tuple[T, float]:
-    """The result of some work where it is done, and how many seconds it took there."""
+    """Return the result of some work where it is done, and how many seconds it took there."""
     start_s = time.perf_counter()
     result = work(*arguments)
     return result, time.perf_counter() - start_s

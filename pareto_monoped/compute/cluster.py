@@ -49,11 +49,11 @@ class DaskWorkers(Staff):
         self._thread.start()
 
     def present(self) -> Mapping[str, Member]:
-        """The workers that the scheduler named last; none while there is no connection to it."""
+        """Return the workers that the scheduler named last; none while there is no connection to it."""
         return self._members if self._client.status == "running" else {}
 
     def state(self) -> str:
-        """Why none may be there."""
+        """Return why none may be there."""
         broken = self._client.status != "running" and self._state == _NO_WORKER
         return "does not answer (the connection has ended)" if broken else self._state
 
@@ -67,7 +67,7 @@ class DaskWorkers(Staff):
             raise WorkerError(f"{self.label}: does not answer ({_words(problem)}); {self.cure}") from None
 
     def is_loss(self, problem: BaseException) -> bool:
-        """Whether a task ended because worker, scheduler or connection did."""
+        """Return whether a task ended because worker, scheduler or connection did."""
         from distributed.client import FutureCancelledError, FuturesCancelledError
         from distributed.comm import CommClosedError
         from distributed.scheduler import KilledWorker, NoValidWorkerError
@@ -103,7 +103,7 @@ class DaskWorkers(Staff):
                 time.sleep(_NEWS_S)
 
     def _connected(self) -> "Client":
-        """A new connection, made aside: where somebody accepts it and then stays silent, Dask waits for ever."""
+        """Return a new connection, made aside: where somebody accepts it and then stays silent, Dask waits for ever."""
         found: Future[Client] = Future()
         threading.Thread(target=self._connect, args=(found,), name="connecting", daemon=True).start()
         try:
@@ -155,7 +155,7 @@ class DaskWorkers(Staff):
             self._state = _NO_WORKER
 
     def _ask(self) -> Mapping[str, int]:
-        """Number of threads by address of each worker, as the scheduler now answers."""
+        """Return the number of threads by address of each worker, as the scheduler now answers."""
         threads: Mapping[str, int] = self._client.sync(self._client.scheduler.ncores, callback_timeout=_ANSWER_S)
         return threads
 

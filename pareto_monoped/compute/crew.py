@@ -66,14 +66,14 @@ class Staff(ABC):
 
     @abstractmethod
     def present(self) -> Mapping[str, Member]:
-        """Who is there now, by name; returns at once."""
+        """Return who is there now, by name; returns at once."""
 
     def state(self) -> str:
-        """Why nobody may be there, in a few words."""
+        """Return why nobody may be there, in a few words."""
         return "has no worker"
 
     def is_loss(self, problem: BaseException) -> bool:
-        """Whether a task failed because its worker was lost, and not by itself."""
+        """Return whether a task failed because its worker was lost, and not by itself."""
         return False
 
     def dismiss(self, name: str) -> None:  # noqa: B027 - nothing, where workers belong to somebody else
@@ -358,7 +358,7 @@ class Crew(Executor):
         self._fail(WorkerError(f"{label}: {why}; {cure}"))
 
     def _absence(self) -> tuple[str, str]:
-        """Why no worker is available, and what the user can do."""
+        """Return why no worker is available, and what the user can do."""
         count = len(self._posts)
         if not count:
             return self._staff.state(), self._staff.cure
@@ -374,6 +374,6 @@ class Crew(Executor):
         self._alone_since_s = None
 
     def _open(self) -> list[Task]:
-        """Tasks without a result."""
+        """Return tasks without a result."""
         tasks = [*self._waiting, *(given.task for post in self._posts.values() for given in post.given)]
         return [task for task in dict.fromkeys(tasks) if not task.future.done() and task.function is not self._greeting]

@@ -252,7 +252,7 @@ class LocalProcesses(Staff):
         self._members[name] = Member(name=name, threads=self._threads, executor=Processes())
 
     def present(self) -> Mapping[str, Member]:
-        """All processes; one that has ended is found out by its tasks."""
+        """Return all processes; one that has ended is found out by its tasks."""
         return dict(self._members)
 
     def dismiss(self, name: str) -> None:
@@ -289,7 +289,7 @@ def say(message: object) -> None:
 
 
 def asked_to_stop() -> bool:
-    """Whether the task at hand is asked to come to an end."""
+    """Return whether the task at hand is asked to come to an end."""
     return _asked >= _at_work
 
 

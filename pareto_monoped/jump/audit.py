@@ -98,7 +98,7 @@ class Audits(AuditMeasures):
         return np.array([not reason for reason in self.reason], dtype=bool)
 
     def as_columns(self) -> dict[str, NDArray[np.generic]]:
-        """Column name to values of shape (n,), ``well_conditioned`` and ``reason`` last."""
+        """Return column name to values of shape (n,), ``well_conditioned`` and ``reason`` last."""
         values = {f.name: np.asarray(getattr(self, f.name)) for f in fields(self) if f.name != "reason"}
         return values | {"well_conditioned": self.well_conditioned, "reason": np.asarray(self.reason)}
 
@@ -217,14 +217,14 @@ def _brief_spread(copies: Floats, base: Jumps, jumps: Evaluator, smooth: NDArray
 
 
 def _within(share: float, changes: Mapping[str, Floats]) -> NDArray[np.bool_]:
-    """Where all changes that have a limit lie within a share of it; NaN does not."""
+    """Return where all changes that have a limit lie within a share of it; NaN does not."""
     limited = [changes[limit.name] <= share * limit.most for limit in LIMITS if limit.name in changes]
     within: NDArray[np.bool_] = np.logical_and.reduce(limited)
     return within
 
 
 def _open_balances(values: Floats, jumps: Evaluator) -> Floats:
-    """What the energy balances of designs that jump leave open, shape (n,)."""
+    """Return what the energy balances of designs that jump leave open, shape (n,)."""
     if jumps.executor is None:
         return _balances((jumps.actuator_maps, jumps.calibration), values, jumps.workers)
     text = setup_text(jumps.actuator_maps, jumps.calibration)
@@ -233,7 +233,7 @@ def _open_balances(values: Floats, jumps: Evaluator) -> Floats:
 
 
 def _balances_of(text: str, values: Floats) -> Floats:
-    """What a worker does."""
+    """Do the part of a worker."""
     return _balances(built(text), values, task_threads())
 
 
@@ -266,7 +266,7 @@ def _with_two_periods(values: Floats, jumps: Evaluator, quarter: Evaluations) ->
 
 
 def _changes(prefix: str, base: Jumps | Evaluations, other: Evaluations) -> dict[str, Floats]:
-    """Absolute change of height and relative change of energy; infinite where ``other`` has lost the jump."""
+    """Return absolute change of height and relative change of energy; infinite where ``other`` has lost the jump."""
     lost = base.ok & ~other.ok
     height = np.where(lost, np.inf, np.abs(other.height_m - base.height_m))
     energy = np.where(lost, np.inf, np.abs(other.energy_j / base.energy_j - 1.0))

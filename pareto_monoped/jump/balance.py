@@ -112,7 +112,7 @@ def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibratio
 
 
 def _moved(moment: Moment, calibration: Calibration) -> Floats:
-    """How far the joints move in a step, as its work is booked, shape (nv,)."""
+    """Return how far the joints move in a step, as its work is booked, shape (nv,)."""
     if calibration.simulation.integrator == "RK4":
         return np.asarray(moment.after.qpos - moment.qpos)
     return np.asarray(0.5 * (moment.qvel + moment.after.qvel) * calibration.simulation.timestep_s)
@@ -145,7 +145,7 @@ def _integration_loss_j(moment: Moment, calibration: Calibration, moved: Floats)
 
 
 def _mesh_share(robots: RobotArrays, calibration: Calibration) -> Floats:
-    """The share of each drive's loss that its gearbox has; the chain, behind it, has the rest. Shape (2,)."""
+    """Return the share of each drive's loss that its gearbox has; the chain, behind it, has the rest. Shape (2,)."""
     mesh = gear_efficiency(robots, calibration.drive)[0]
     chain = np.array([1.0, calibration.drive.chain_efficiency])
     lost = 1.0 - mesh * chain
@@ -154,12 +154,12 @@ def _mesh_share(robots: RobotArrays, calibration: Calibration) -> Floats:
 
 
 def back_s(calibration: Calibration) -> float:
-    """How long before a state's speeds its positions are taken, see ``Simulation.positions_read``."""
+    """Return how long before a state's speeds its positions are taken, see ``Simulation.positions_read``."""
     return 0.5 * calibration.simulation.timestep_s if calibration.simulation.positions_read != "state" else 0.0
 
 
 def _energies(robots: RobotArrays, calibration: Calibration, moment: Moment) -> Floats:
-    """Kinetic energy of bodies and of rotors, potential energy, and what the end stops store, at a state."""
+    """Return kinetic energy of bodies and of rotors, potential energy, and what the end stops store, at a state."""
     import mujoco
 
     model, data = moment.model, moment.scratch
@@ -173,7 +173,7 @@ def _energies(robots: RobotArrays, calibration: Calibration, moment: Moment) -> 
 
 
 def _rotors_kinetic_j(robots: RobotArrays, calibration: Calibration, speed: Floats) -> float:
-    """What the turning parts have beyond the motion of the bodies that carry them, see ``robot.rotation``."""
+    """Return what the turning parts have beyond the motion of the bodies that carry them, see ``robot.rotation``."""
     hip, knee = speed
     armature = robots.armature_kg_m2[0]
     if calibration.joints.rotors == "armature":
@@ -274,7 +274,7 @@ def _jumped(population: Population, calibration: Calibration, damping: Floats) -
 
 
 def _energies_j(batch: Any, qpos: Floats, qvel: Floats | float) -> Floats:
-    """Kinetic and potential energy of the simulations of a batch at given states, shape (n,)."""
+    """Return kinetic and potential energy of the simulations of a batch at given states, shape (n,)."""
     import mujoco
 
     batch.expand("opt.enableflags")[:] = int(mujoco.mjtEnableBit.mjENBL_ENERGY)

@@ -242,7 +242,7 @@ class Simulation:
 
 
 def _whole(number: float) -> bool:
-    """Whether a number is whole but for rounding."""
+    """Return whether a number is whole but for rounding."""
     return math.isfinite(number) and abs(number - round(number)) < 1e-6
 
 
@@ -306,21 +306,21 @@ def calibration_values(calibration: Calibration) -> dict[str, Any]:
 
 
 def calibration_names() -> tuple[str, ...]:
-    """Names of the calibrations shipped with the package, the default first."""
+    """Return names of the calibrations shipped with the package, the default first."""
     folder = resources.files("pareto_monoped") / "data" / "calibrations"
     names = sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
     return (DEFAULT, *(name for name in names if name != DEFAULT))
 
 
 def earlier_calibrations() -> tuple[str, ...]:
-    """Labels of the earlier versions that are shipped for comparison, such as ``reference-1``."""
+    """Return labels of the earlier versions that are shipped for comparison, such as ``reference-1``."""
     folder = resources.files("pareto_monoped") / "data" / "calibrations" / "earlier"
     return tuple(sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir()))
 
 
 @cache
 def _present_labels() -> Mapping[str, str]:
-    """Label of each shipped calibration's present version, such as ``reference-3`` -> its name."""
+    """Return the label of each shipped calibration's present version, such as ``reference-3`` -> its name."""
     return {load_calibration(name).label: name for name in calibration_names()}
 
 

@@ -33,5 +33,5 @@ def strength_for(calibration: str) -> bool:
 
 
 def _is_paper(calibration: str) -> bool:
-    """Whether a name is that of the calibration ``paper``, with or without a version."""
+    """Return whether a name is that of the calibration ``paper``, with or without a version."""
     return re.fullmatch(rf"{_PAPER}(-\d+)?", calibration) is not None

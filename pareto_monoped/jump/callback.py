@@ -99,7 +99,7 @@ def controlled() -> Iterator[None]:
 
 @lru_cache(maxsize=1)
 def _compiled() -> Any:
-    """The callback as a C function."""
+    """Return the callback as a C function."""
     library = ctypes.CDLL(str(_library()))
     for name in ("mj_getState", "mj_setState", "mj_stateSize"):
         llvmlite.binding.add_symbol(name, ctypes.cast(getattr(library, name), ctypes.c_void_p).value)
@@ -112,7 +112,7 @@ def _origin(source: Path) -> int:
 
 
 def _library() -> Path:
-    """The shared library that MuJoCo's package loads."""
+    """Return the shared library that MuJoCo's package loads."""
     folder = Path(mujoco.__file__).parent
     for pattern in ("libmujoco.so*", "libmujoco*.dylib", "mujoco.dll"):
         for path in sorted(folder.glob(pattern)):

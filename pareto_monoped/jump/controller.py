@@ -49,7 +49,7 @@ def control(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
 
 @compiled
 def _fine(q: Floats, v: Floats) -> bool:
-    """Whether a state is finite and slower than ``SPEED_LIMIT``."""
+    """Return whether a state is finite and slower than ``SPEED_LIMIT``."""
     fine = True
     for k in range(v.shape[0]):
         fine = fine and math.isfinite(q[k]) and abs(v[k]) < SPEED_LIMIT
@@ -148,7 +148,7 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
 
 @compiled
 def _direction(angle: float) -> tuple[float, float]:
-    """Sine and cosine."""
+    """Return sine and cosine."""
     return math.sin(angle), math.cos(angle)
 
 
@@ -167,7 +167,7 @@ def _read_back(q: Floats, v: Floats, jump: Any) -> tuple[float, float, float]:
 def _foot(
     thigh: tuple[float, float], shank: tuple[float, float], jump: Any
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Vectors (x, z) from hip to foot and from knee to foot; the links have these sines and cosines."""
+    """Return vectors (x, z) from hip to foot and from knee to foot; the links have these sines and cosines."""
     x, z = -jump.shank_length_m * shank[0], -jump.shank_length_m * shank[1]
     return (-jump.thigh_length_m * thigh[0] + x, -jump.thigh_length_m * thigh[1] + z), (x, z)
 
@@ -188,7 +188,7 @@ def _note_state(q: Floats, v: Floats, thigh: tuple[float, float], shank: tuple[f
 
 @compiled
 def _gate(clearance: float, touching: bool, jump: Any) -> float:
-    """The share of the torque that passes at a foot clearance; notes lift-off."""
+    """Return the share of the torque that passes at a foot clearance; notes lift-off."""
     length = jump.fade_length_m
     if length > 0.0:
         u: float = min(max(clearance / length, 0.0), 1.0)
@@ -208,7 +208,7 @@ def _gate(clearance: float, touching: bool, jump: Any) -> float:
 
 @compiled
 def _release(knee: float, jump: Any) -> float:
-    """The share of the knee's torque before its lower stop: a ramp over ``knee_release_rad`` down to zero."""
+    """Return the share of the knee's torque before its lower stop: a ramp over ``knee_release_rad`` down to zero."""
     if jump.knee_release_rad == 0.0:
         return 1.0
     share: float = min(max((knee - jump.lower_stop_rad[KNEE]) / jump.knee_release_rad, 0.0), 1.0)
@@ -262,7 +262,7 @@ def _virtual_leg(
 
 @compiled
 def _held_pose(angle: tuple[float, float], speed: tuple[float, float], jump: Any) -> tuple[float, float]:
-    """Torques of hip and knee that pull the leg back to its start pose in flight."""
+    """Return torques of hip and knee that pull the leg back to its start pose in flight."""
     stiffness, damping = jump.flight_stiffness_n_m_per_rad, jump.flight_damping_n_m_s_per_rad
     return (
         stiffness * (jump.start_rad[HIP] - angle[HIP]) - damping * speed[HIP],
@@ -272,7 +272,7 @@ def _held_pose(angle: tuple[float, float], speed: tuple[float, float], jump: Any
 
 @compiled
 def _limited(torque: float, speed: float, jump: Any, joint: int) -> float:
-    """``torque`` within the motor's peak torque and, while the motor drives, within its voltage-speed line."""
+    """Return ``torque`` within the motor's peak torque and, while the motor drives, within its voltage-speed line."""
     limit: float = jump.torque_limit_n_m[joint]
     upper, lower = limit, -limit
     if jump.voltage_limit > 0.0:
@@ -290,7 +290,7 @@ def _limited(torque: float, speed: float, jump: Any, joint: int) -> float:
 
 @compiled
 def _delivered(torque: float, speed: float, jump: Any, joint: int) -> float:
-    """The torque that reaches the joint: the load-dependent friction of gears and chain opposes the motion."""
+    """Return the torque that reaches the joint: the load-dependent friction of gears and chain opposes the motion."""
     loss: float = jump.loss[joint]
     limit: float = jump.torque_limit_n_m[joint]
     if loss == 0.0 or torque == 0.0:
@@ -382,7 +382,7 @@ def _loads(v: Floats, jump: Any) -> None:
 
 @compiled
 def _turned(vector: Any, direction: tuple[float, float]) -> tuple[float, float]:
-    """A vector (x, z) of a body frame in the world: turned about +y by the angle with this sine and cosine."""
+    """Return a vector (x, z) of a body frame in the world: turned about +y by the angle with this sine and cosine."""
     sin, cos = direction
     return cos * vector[0] + sin * vector[1], cos * vector[1] - sin * vector[0]
 
@@ -391,7 +391,7 @@ def _turned(vector: Any, direction: tuple[float, float]) -> tuple[float, float]:
 def _accelerated(
     origin: tuple[float, float], arm: tuple[float, float], speed: float, acceleration: float
 ) -> tuple[float, float]:
-    """Acceleration of the end of ``arm`` on a body that turns about +y, from that of its origin."""
+    """Return the acceleration of the end of ``arm`` on a body that turns about +y, from that of its origin."""
     centripetal = speed * speed
     return (
         origin[0] + acceleration * arm[1] - centripetal * arm[0],
@@ -401,5 +401,5 @@ def _accelerated(
 
 @compiled
 def _moment(arm: tuple[float, float], force: tuple[float, float]) -> float:
-    """Moment about +y of a force at the end of ``arm``."""
+    """Return the moment about +y of a force at the end of ``arm``."""
     return arm[1] * force[0] - arm[0] * force[1]

@@ -30,7 +30,7 @@ simulation, this one makes heights and energies depend little on the step (docs/
 
 
 def end_stops(robots: RobotArrays, joints: Joints) -> EndStops:
-    """The end stops of both joints."""
+    """Return the end stops of both joints."""
     if joints.stops == "parts":
         return simulated(robots.stops.hip), simulated(robots.stops.knee)
     return joints.hip_stop, joints.knee_stop
@@ -64,14 +64,14 @@ def simulated(stop: JointStop) -> EndStop:
 
 
 def slow_torque_n_m(stop: EndStop, beyond_rad: Floats) -> Floats:
-    """Torque with which an end stop pushes back slowly at angles beyond its end of the range."""
+    """Return the torque with which an end stop pushes back slowly at angles beyond its end of the range."""
     d = stop.impedance * np.clip(np.asarray(beyond_rad) / stop.width_rad, 0.0, 1.0)
     share = np.square(d / stop.impedance) * (1.0 - stop.impedance) / (1.0 - d)
     return np.asarray(stop.stiffness_n_m_per_rad * beyond_rad * share)
 
 
 def rebound_rad_per_s(stop: EndStop, speed_rad_per_s: float, inertia_kg_m2: float) -> float:
-    """Speed at which a free inertia leaves a stop that it met at a speed, see ``rebound.rebound``.
+    """Return the speed at which a free inertia leaves a stop that it met at a speed, see ``rebound``.
 
     The stop pushes and never pulls.
     """

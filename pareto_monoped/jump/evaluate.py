@@ -50,12 +50,12 @@ class Evaluations(JumpMeasures):
         return np.asarray(self.status == "ok")
 
     def of(self, name: str) -> Floats:
-        """The measure of that name, shape (n,)."""
+        """Return the measure of that name, shape (n,)."""
         values: Floats = getattr(self, name)
         return values
 
     def as_columns(self) -> dict[str, NDArray[np.generic]]:
-        """Column name to values of shape (n,), ``status`` and ``reason`` first."""
+        """Return column name to values of shape (n,), ``status`` and ``reason`` first."""
         values = {field.name: getattr(self, field.name) for field in fields(self)}
         return values | {"reason": np.array(self.reason, dtype=np.str_)}
 
@@ -124,7 +124,7 @@ class Evaluator:
 
 
 def _alike(robots: Mapping[int, RobotArrays]) -> list[list[int]]:
-    """Keys of populations that have the same end stops, and can thus be one population."""
+    """Return keys of populations that have the same end stops, and can thus be one population."""
     groups: dict[JointStops, list[int]] = {}
     for key, population in robots.items():
         groups.setdefault(population.stops, []).append(key)
@@ -151,7 +151,7 @@ def _add_safeties(values: Floats, maps: JointMaps, table: "_Table", rows: NDArra
 
 
 def _nonsense(values: Floats) -> dict[int, str]:
-    """The rows of ``values`` that are not designs, each with the reason."""
+    """Return the rows of ``values`` that are not designs, each with the reason."""
     with np.errstate(invalid="ignore"):
         wrong = ~((values >= LEAST) & (values <= MOST))
     reasons: dict[int, str] = {}
@@ -240,12 +240,12 @@ def _collect(
 
 
 def _travels_rad(robots: RobotArrays) -> Floats:
-    """Angles beyond the ranges of hip and knee at which their bumpers are fully compressed."""
+    """Return angles beyond the ranges of hip and knee at which their bumpers are fully compressed."""
     return np.array([getattr(robots.stops, joint).travel_rad for joint in JOINTS])
 
 
 def _sustained_per_minute(records: Records, continuous_torque_n_m: Floats) -> Floats:
-    """Jumps per minute at which neither motor makes more heat in its winding than at its continuous torque."""
+    """Return jumps per minute at which neither motor makes more heat in its winding than at its continuous torque."""
     allowed_w = records["heat_w_per_n2_m2"] * np.square(continuous_torque_n_m)
     with np.errstate(divide="ignore"):
         return np.asarray((60.0 * allowed_w / records["winding_heat_j"]).min(axis=1))

@@ -78,7 +78,7 @@ def recordings(
 
 
 def _course(population: Population) -> Floats:
-    """``FRAME_COLUMNS`` at every step of every jump, shape (n, steps, columns); zero after a jump's end."""
+    """Return ``FRAME_COLUMNS`` at every step of every jump, shape (n, steps, columns); zero after a jump's end."""
     from mujoco import batch
 
     from pareto_monoped.jump.callback import controlled
@@ -133,12 +133,12 @@ class _Bodies:
         return cls(step_s=records["timestep_s"].copy(), mass_kg=records["body_mass_kg"].copy(), **given)
 
     def clearance_m(self, position: Floats, directions: Floats) -> Floats:
-        """Gap between foot and floor."""
+        """Return the gap between foot and floor."""
         reach = self.thigh_length_m * directions[:, 1] + self.shank_length_m * directions[:, 3]
         return np.asarray(position[:, 1] - reach - self.foot_radius_m)
 
     def momentum_kg_m_per_s(self, velocity: Floats, directions: Floats) -> Floats:
-        """Upward momentum of the whole robot."""
+        """Return the upward momentum of the whole robot."""
         rise, hip, below = velocity[:, 1], velocity[:, 2], velocity[:, 2] + velocity[:, 3]
         sin_hip, cos_hip, sin_knee, cos_knee = directions.T
         thigh, shank = self.thigh_com_m, self.shank_com_m

@@ -137,7 +137,7 @@ def template_mjcf(calibration: Calibration, stops: EndStops, user_data: int) -> 
 
 
 def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Floats]:
-    """The model fields that differ between robots: MuJoCo's name -> values of shape (n, ...)."""
+    """Return the model fields that differ between robots: MuJoCo's name -> values of shape (n, ...)."""
     n, slides = len(robots), calibration.simulation.base_slides
     mass, com, inertia = (np.zeros((n, 4, *tail)) for tail in ((), (3,), (3,)))
     mass[:, 1:] = robots.body_mass_kg
@@ -182,19 +182,19 @@ def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Flo
 
 
 def joint_damping(robots: RobotArrays, joints: Joints) -> Floats:
-    """Viscous friction of hip and knee with their motors', N m s/rad, shape (n, 2)."""
+    """Return viscous friction of hip and knee with their motors', N m s/rad, shape (n, 2)."""
     return joints.damping_n_m_s_per_rad + joints.motor_damping_n_m_s_per_rad * np.square(robots.ratio)
 
 
 def gear_efficiency(robots: RobotArrays, drive: Drive) -> Floats:
-    """Efficiency of both gearboxes under load, shape (n, 2), as the calibration reads it."""
+    """Return the efficiency of both gearboxes under load, shape (n, 2), as the calibration reads it."""
     if not drive.mesh_losses:
         return np.ones_like(robots.efficiency)
     return (robots.efficiency_total if drive.efficiency == "total" else robots.efficiency).copy()
 
 
 def torque_limit(robots: RobotArrays, drive: Drive) -> Floats:
-    """Peak torque of hip and knee, N m at the joint, shape (n, 2)."""
+    """Return the peak torque of hip and knee, N m at the joint, shape (n, 2)."""
     return drive.peak_torque_scale * robots.peak_torque_n_m * [1.0, drive.knee_torque_scale]
 
 
@@ -245,7 +245,7 @@ def _document(
     springs: dict[str, Any] | None,
     comment: str,
 ) -> str:
-    """The XML text of one robot; reading its numbers gives the same bits."""
+    """Return the XML text of one robot; reading its numbers gives the same bits."""
     simulation, joints = calibration.simulation, calibration.joints
     friction_loss = f' frictionloss="{_n(joints.friction_n_m)}"' if joints.friction_n_m else ""
     contact = calibration.contact
@@ -328,5 +328,5 @@ friction="{_n(contact.friction)} 0.005 0.0001" solref="{_n(*foot_solref)}" solim
 
 
 def _n(*values: float) -> str:
-    """Numbers, each as the shortest text that reads back to the same bits."""
+    """Return numbers, each as the shortest text that reads back to the same bits."""
     return " ".join(repr(float(value)) for value in values)

@@ -45,7 +45,7 @@ _lock = threading.Lock()
 
 
 def facts() -> Facts:
-    """The facts of this process; computed once."""
+    """Return the facts of this process; computed once."""
     with _lock:
         return _facts()
 
@@ -63,7 +63,7 @@ def _facts() -> Facts:
 
 
 def _linear_algebra() -> str:
-    """Kind of processor that numpy's linear algebra was chosen for; empty if it does not say."""
+    """Return the kind of processor that numpy's linear algebra was chosen for; empty if it does not say."""
     kinds = {library.get("architecture") for library in threadpool_info() if library["user_api"] == "blas"}
     return ", ".join(sorted(kind for kind in kinds if kind))
 
@@ -85,7 +85,7 @@ def _numbers() -> str:
 
 
 def _facts_with(extra: str | None) -> Facts:
-    """The facts of this process, with the versions of what an extra has."""
+    """Return the facts of this process, with the versions of what an extra has."""
     plain = facts()
     if extra is None:
         return plain
@@ -107,7 +107,7 @@ def greeting(threads: int, extra: str | None = None) -> Facts:
 
 
 def complaint(theirs: Facts, extra: str | None = None) -> str | None:
-    """What keeps a worker with these facts from working for this process; None if nothing does."""
+    """Return what keeps a worker with these facts from working for this process; None if nothing does."""
     ours = _facts_with(extra)
     pairs = [(name, theirs.versions.get(name), here) for name, here in ours.versions.items()]
     pairs += [("system", theirs.system, ours.system), ("machine", theirs.machine, ours.machine)]

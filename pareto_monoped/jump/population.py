@@ -73,7 +73,7 @@ class Population:
                     )
 
     def complaints(self) -> list[str]:
-        """What MuJoCo found wrong in each jump, in our words; empty where nothing was."""
+        """Return what MuJoCo found wrong in each jump, in our words; empty where nothing was."""
         import mujoco
 
         texts = [" ".join(self.errors.get(i, "").split()) for i in range(len(self.records))]
@@ -138,7 +138,7 @@ def _component(batch: Any, component: Any) -> Floats:
 
 @functools.lru_cache(maxsize=16)
 def _template(calibration: Calibration, stops: EndStops) -> Any:
-    """A model of a robot with round numbers; ``prepare`` overwrites every field that differs between robots."""
+    """Return a model of a robot with round numbers; ``prepare`` overwrites every field that differs between robots."""
     import mujoco
 
     return mujoco.MjModel.from_xml_string(model.template_mjcf(calibration, stops, RECORD_NUMBERS))

@@ -46,7 +46,7 @@ class Screened(ScreenMeasures):
         )
 
     def as_columns(self) -> dict[str, Floats]:
-        """Column name to values of shape (n,)."""
+        """Return column name to values of shape (n,)."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
@@ -108,6 +108,6 @@ def screened(
 
 
 def _screened_of(text: str, designs: Floats, known: Jumps, seed: int) -> Screened:
-    """What a worker does."""
+    """Do the part of a worker."""
     (maps,), calibration = built(text)
     return screened(designs, maps, calibration, known, workers=task_threads(), seed=seed)

@@ -55,7 +55,7 @@ def setup_text(maps: Sequence[Maps], calibration: Calibration) -> str:
 
 @lru_cache(maxsize=16)
 def built(text: str) -> Setup:
-    """The setup in a text of ``setup_text``; kept for the next task."""
+    """Return the setup in a text of ``setup_text``; kept for the next task."""
     values = json.loads(text)
     maps = [map_of(stored_motor(motor, source=_SOURCE), rules) for motor, rules in values["motors"]]
     kits = tuple(JointMaps(hip=maps[hip], knee=maps[knee]) for hip, knee in values["kits"])
@@ -63,7 +63,7 @@ def built(text: str) -> Setup:
 
 
 def jumps_of(text: str, designs: Floats, motors: NDArray[np.intp], variations: Variations | None) -> Evaluations:
-    """What a worker does: let designs jump, see ``Evaluator``."""
+    """Let designs jump in a worker, see ``Evaluator``."""
     (first, *others), calibration = built(text)
     return Evaluator(first, calibration, task_threads(), others=others)(designs, motors, variations=variations)
 
@@ -111,7 +111,7 @@ def evaluator_of(
     others: Sequence[Maps] = (),
     executor: Executor | None = None,
 ) -> Evaluator:
-    """An evaluator on this process's threads, or on an executor if there is one; ``workers`` are the threads."""
+    """Return an evaluator on this process's threads, or on an executor if there is one; ``workers`` are the threads."""
     if executor is None:
         return Evaluator(actuator_map, calibration, workers, others=others)
     return SharedEvaluator(actuator_map, calibration, workers, others=others, executor=executor)

@@ -60,7 +60,7 @@ def simulate(design: Design, maps: Maps, calibration: Calibration, *, trace: boo
 def result_of(
     design: Design, calibration: Calibration, evaluations: Evaluations, trace: dict[str, Floats]
 ) -> JumpResult:
-    """The first row of ``evaluations`` as a single result."""
+    """Return the first row of ``evaluations`` as a single result."""
     return JumpResult(
         design=design,
         calibration=calibration.label,
@@ -132,7 +132,7 @@ def moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> I
 
 
 def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> dict[str, Floats]:
-    """``TRACE_COLUMNS`` of the first robot's jump, each of shape (steps,)."""
+    """Return ``TRACE_COLUMNS`` of the first robot's jump, each of shape (steps,)."""
     import mujoco
 
     rows = []
@@ -176,7 +176,7 @@ def contact_force(data: Any) -> Floats:
 
 
 def constraint_forces(data: Any) -> tuple[Floats, Floats, Floats]:
-    """The generalised forces of joint friction, end stops and contacts, each of shape (nv,)."""
+    """Return the generalised forces of joint friction, end stops and contacts, each of shape (nv,)."""
     import mujoco
 
     kinds, kind = mujoco.mjtConstraint, data.efc_type

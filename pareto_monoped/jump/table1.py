@@ -47,7 +47,7 @@ class Row:
     reference: Result
 
     def as_dict(self) -> dict[str, Any]:
-        """The row as nested dicts of plain values."""
+        """Return the row as nested dicts of plain values."""
         return asdict(self)
 
 

@@ -45,7 +45,7 @@ class Variations:
 
 
 def varied_robots(robots: RobotArrays, variations: Variations) -> RobotArrays:
-    """The robots as built. Centres of mass stay, and so does the mass of a link that is a little longer."""
+    """Return the robots as built. Centres of mass stay, and so does the mass of a link that is a little longer."""
     return replace(
         robots,
         body_mass_kg=robots.body_mass_kg * variations.masses,
@@ -58,7 +58,7 @@ def varied_robots(robots: RobotArrays, variations: Variations) -> RobotArrays:
 
 
 def varied_control(control: Floats, variations: Variations) -> Floats:
-    """The gains as they act, shape (n, 6), in the order of ``CONTROL``."""
+    """Return the gains as they act, shape (n, 6), in the order of ``CONTROL``."""
     varied = control.copy()
     varied[:, [CONTROL.index(name) for name in PAPER_CONTROL]] *= variations.gains
     return varied
@@ -92,7 +92,7 @@ T = TypeVar("T", bound="DataclassInstance")
 
 
 def take(record: T, rows: NDArray[np.intp]) -> T:
-    """Return a copy of a frozen dataclass with some rows, in their order, of every array and tuple; the rest is shared."""
+    """Return a copy of a frozen dataclass with some rows of every array and tuple, in this order; the rest is shared."""
     kept: dict[str, Any] = {}
     for field in fields(record):
         values = getattr(record, field.name)
