@@ -142,7 +142,7 @@ _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")  #: What pydantic 
 
 
 def _line(kind: type, problem: ValidationError) -> str:
-    """Return the first error in one line; pydantic lists errors in the order of the fields, unknown keys behind them."""
+    """Return the first error in one line; pydantic lists errors by field, unknown keys last."""
     errors = problem.errors(include_url=False)
     first = errors[0]
     if first["type"] == "missing":  # an unknown key may be the missing one, misspelt

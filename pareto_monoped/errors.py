@@ -105,7 +105,7 @@ def complaint(quantity: str, value: object, allowed: str, cure: str) -> str:
 
 
 def shown(value: object) -> str:
-    """Return a value as messages show it: without addresses in memory, and a table or a large object by its kind alone."""
+    """Return a value as messages show it: without memory addresses, a table or a large object by its kind alone."""
     text = _ADDRESS.sub("", repr(value))
     large = len(text) > _SHOWN and not isinstance(value, str | list | tuple | dict)
     if large or "\n" in text:

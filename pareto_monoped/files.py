@@ -172,7 +172,7 @@ def is_adrift() -> bool:
 
 
 def unwritable(path: Path, error: OSError, cure: str) -> OutputError | DiskError:
-    """Return the error for a file or folder that cannot be written; ``cure`` helps unless the system is full or fails."""
+    """Return the error for a path that cannot be written; ``cure`` helps unless the system is full or fails."""
     if error.errno == errno.ENOENT and is_adrift():
         return OutputError(ADRIFT)
     kind = DiskError if is_failure(error) else OutputError

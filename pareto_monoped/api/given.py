@@ -246,7 +246,7 @@ def own_calibration(given: Calibration) -> Calibration:
 
 
 def stored_calibration_name(calibration: Calibration) -> str:
-    """Return the name under which a study stores a script's calibration; a shipped name with other values is refused."""
+    """Return the name under which a study stores a script's calibration, which no shipped one may have."""
     if calibration.name not in calibration_names():
         return f"{OWN_CALIBRATION}{calibration.name}"
     if calibration.label in earlier_calibrations() and calibration == shipped_calibration(calibration.label):

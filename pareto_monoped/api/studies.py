@@ -296,7 +296,7 @@ def as_place(given: StrPath | StudyPlace, what: str = "path", *, allowed: str = 
 
 
 def as_path(given: StrPath, what: str = "path", *, allowed: str = "text or a path") -> Path:
-    """Return a path from text or a path; else raise ``InputError`` with the argument ``what`` and what is ``allowed``."""
+    """Return a path from text or a path; else raise ``InputError``, in which ``what`` is ``allowed``."""
     try:
         path = Path(given)
     except TypeError:
@@ -358,7 +358,7 @@ def _conditions(
 
 
 def _known(what: str, values: Any) -> dict[str, float]:
-    """Return numbers of known measures and variables; raise ``InputError``, or ``SelectionError`` for an unknown name."""
+    """Return numbers of measures and variables; raise ``InputError``, or ``SelectionError`` for an unknown name."""
     numbers = table_of(what, values)
     for name in numbers:
         if name not in CONDITION_NAMES and not is_own(name):

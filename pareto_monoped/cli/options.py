@@ -167,7 +167,7 @@ def _formats() -> Iterable[str]:
 
 
 def trials(ctx: "click.Context", _: "click.Parameter", incomplete: str) -> "list[CompletionItem]":
-    """Return numbers of the trials on the front of the study that the line names so far, with their objectives as help."""
+    """Return numbers of the trials on the front of the study that the line names, with their objectives as help."""
     from click.shell_completion import CompletionItem
 
     from pareto_monoped.errors import ParetoMonopedError
