@@ -60,12 +60,7 @@ def run_study(study: Study, db: Path, threads: int, scheduler: str | None, seat:
     warnings.simplefilter("ignore")  # they are for developers, and would be written across the table
     with nullcontext() if scheduler is None else cluster(scheduler, tell=tell, seat=seat) as executor:
         done = run(
-            study,
-            db,
-            workers=threads,
-            executor=executor,
-            progress=advance,
-            notify=lambda line: say(Noted(line=line)),
+            study, db, workers=threads, executor=executor, progress=advance, notify=lambda line: say(Noted(line=line))
         )
     found = {name: getattr(done, name) for name in Ended.__dataclass_fields__ if name != "remarks"}
     return Ended(**found, remarks=tuple(remarks(done.data)))

@@ -33,20 +33,8 @@ if TYPE_CHECKING:
 )
 @scheduler_option
 @click.option("--status", is_flag=True, help="Run nothing: only show how the studies stand.")
-@click.option(
-    "--report",
-    "page",
-    type=HTML_FILE,
-    metavar="FILE.html",
-    help="Write a page that compares them.",
-)
-@click.option(
-    "--csv",
-    "table",
-    type=CSV_FILE,
-    metavar="FILE.csv",
-    help="Write a table with a row per study.",
-)
+@click.option("--report", "page", type=HTML_FILE, metavar="FILE.html", help="Write a page that compares them.")
+@click.option("--csv", "table", type=CSV_FILE, metavar="FILE.csv", help="Write a table with a row per study.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON: a line per stored generation and per study.")
 @force_option
 def campaign(

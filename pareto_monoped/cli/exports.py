@@ -38,12 +38,7 @@ if TYPE_CHECKING:
 @click.option("--case", type=click.Choice(list(PAPER_CASES)), help="A row of the paper's Table I, instead of DB.")
 @motor_options("With --case: ")
 @click.option("--rules", type=click.Choice(RULE_SETS), help=f"With --case: gearbox rules.  [default: {DEFAULT_RULES}]")
-@click.option(
-    "--record",
-    type=Local(),
-    metavar="FILE.json",
-    help="Repeat the export that has this design.json.",
-)
+@click.option("--record", type=Local(), metavar="FILE.json", help="Repeat the export that has this design.json.")
 @click.option("--front", "whole_front", is_flag=True, help="Export all designs of the front to DIR/trial_N.")
 @click.option(
     "--every", type=click.IntRange(min=1), default=1, metavar="N", help="With --front: only every N-th design."

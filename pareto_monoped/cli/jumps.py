@@ -258,13 +258,7 @@ def _write_trace(path: Path, result: "JumpResult", *, force: bool) -> None:
 
 
 def _write_model(
-    path: Path,
-    design: Design,
-    motors: dict[str, str],
-    maps: "JointMaps",
-    calibration: "Calibration",
-    *,
-    force: bool,
+    path: Path, design: Design, motors: dict[str, str], maps: "JointMaps", calibration: "Calibration", *, force: bool
 ) -> None:
     from pareto_monoped.files import write_text
     from pareto_monoped.jump.model import mjcf

@@ -97,10 +97,7 @@ sample_seed_option = click.option(
     "--seed", type=click.IntRange(min=0), metavar="N", help="Of the samples.  [default: the study's, or 1]"
 )
 uncertainty_option = click.option(
-    "--uncertainty",
-    type=Local(),
-    metavar="FILE.toml",
-    help="TOML file of ranges, instead of the study's or ours.",
+    "--uncertainty", type=Local(), metavar="FILE.toml", help="TOML file of ranges, instead of the study's or ours."
 )
 
 
@@ -196,10 +193,7 @@ formats = _completing(_formats)
 def motor_options(prefix: str = "") -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Add options ``--motor``, ``--hip-motor`` and ``--knee-motor`` to a command; ``chosen_motors`` reads them."""
     both = click.option(
-        "--motor",
-        metavar="NAME",
-        shell_complete=motors,
-        help=f"{prefix}Name or TOML file.  [default: {PAPER_MOTOR}]",
+        "--motor", metavar="NAME", shell_complete=motors, help=f"{prefix}Name or TOML file.  [default: {PAPER_MOTOR}]"
     )
     hip = click.option(
         "--hip-motor",

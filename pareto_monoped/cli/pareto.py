@@ -23,13 +23,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("study_file", metavar="[STUDY.toml]", required=False, type=Local())
-@click.option(
-    "-o",
-    "--output",
-    metavar="DIR",
-    type=Local(),
-    help="Folder for the results.  [default: reports/STUDY]",
-)
+@click.option("-o", "--output", metavar="DIR", type=Local(), help="Folder for the results.  [default: reports/STUDY]")
 @click.option("--db", metavar="DB", type=DATABASE_FILE, help="Database.  [default: beside STUDY.toml]")
 @click.option("--evaluations", type=click.IntRange(min=1), metavar="N", help="Number of jumps, instead of the study's.")
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")

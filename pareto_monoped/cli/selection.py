@@ -123,11 +123,7 @@ def required(selector: "Selector | None") -> "Selector":
 
 
 def _conditions(
-    min_height: float | None,
-    max_energy: float | None,
-    limit: Sequence[str],
-    least: Sequence[str],
-    most: Sequence[str],
+    min_height: float | None, max_energy: float | None, limit: Sequence[str], least: Sequence[str], most: Sequence[str]
 ) -> "tuple[Condition | MaxEnergy, ...]":
     """Return all conditions, in the order of the options."""
     from pareto_monoped.pareto.pick import at_or_better

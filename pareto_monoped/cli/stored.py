@@ -165,17 +165,9 @@ def _server(application: Any, port: int | None) -> "WSGIServer":
 @click.argument("dbs", metavar="DB [DB ...]", nargs=-1, required=True, type=DATABASE)
 @click.option("-o", "--output", type=HTML_FILE, metavar="FILE.html", help="The HTML page.")
 @click.option(
-    "--figures",
-    type=Local(file_okay=False),
-    metavar="DIR",
-    help="Folder for figures for print, as SVG and PNG.",
+    "--figures", type=Local(file_okay=False), metavar="DIR", help="Folder for figures for print, as SVG and PNG."
 )
-@click.option(
-    "--exports",
-    type=Local(file_okay=False),
-    metavar="DIR",
-    help="Folder of exported designs, DIR/trial_N.",
-)
+@click.option("--exports", type=Local(file_okay=False), metavar="DIR", help="Folder of exported designs, DIR/trial_N.")
 @click.option("--no-jumps", is_flag=True, help="Leave out the jumps of the fronts' designs: quicker, and smaller.")
 @force_option
 def report(

@@ -168,12 +168,7 @@ def audit(
     ok = np.flatnonzero(base.ok)
     if len(ok):
         balance[ok] = _open_balances(values[ok], jumps)
-    measured = {
-        "energy_balance_error": balance,
-        **halved,
-        **spread,
-        **rest,
-    }
+    measured = {"energy_balance_error": balance, **halved, **spread, **rest}
     reasons = tuple(
         "; ".join(exceeded({name: float(column[i]) for name, column in measured.items()}))
         if base.ok[i]

@@ -71,12 +71,7 @@ class Evaluator:
     executor: Executor | None = None  #: what shares out the jumps, see ``jump.shared``; None: these threads do them all
 
     def __init__(
-        self,
-        actuator_map: Maps,
-        calibration: Calibration,
-        workers: int = 1,
-        *,
-        others: Sequence[Maps] = (),
+        self, actuator_map: Maps, calibration: Calibration, workers: int = 1, *, others: Sequence[Maps] = ()
     ) -> None:
         self.actuator_map = actuator_map
         self.actuator_maps = tuple(map(joint_maps, (actuator_map, *others)))
@@ -103,11 +98,7 @@ class Evaluator:
         return table.evaluations()
 
     def _evaluate(
-        self,
-        values: Floats,
-        rows_of: Mapping[int, NDArray[np.intp]],
-        table: "_Table",
-        variations: Variations | None,
+        self, values: Floats, rows_of: Mapping[int, NDArray[np.intp]], table: "_Table", variations: Variations | None
     ) -> None:
         """Fill the table; ``rows_of`` has the rows of each kit of motors."""
         built = {

@@ -92,7 +92,7 @@ T = TypeVar("T", bound="DataclassInstance")
 
 
 def take(record: T, rows: NDArray[np.intp]) -> T:
-    """Return a copy of a frozen dataclass with some rows of every array and tuple, in this order; all else is shared."""
+    """Return a copy of a frozen dataclass with some rows of every array and tuple, in this order; the rest stays."""
     kept: dict[str, Any] = {}
     for field in fields(record):
         values = getattr(record, field.name)
