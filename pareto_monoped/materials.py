@@ -6,20 +6,16 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from pareto_monoped.config import checked, read_shipped
+from pareto_monoped.config import Positive, Strict, checked, read_shipped
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
-_STRICT = ConfigDict(extra="forbid")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Material:
+class Material(Strict):
     """A material."""
-
-    __pydantic_config__ = _STRICT
 
     name: str  #: in words, as it stands in parts lists
     density_kg_per_m3: Positive  #: mass over volume
@@ -60,10 +56,8 @@ class GearMaterial(ElasticMaterial):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Alloy:
+class Alloy(Strict):
     """An alloy in one condition, as it is ordered."""
-
-    __pydantic_config__ = _STRICT
 
     name: str  #: designation and condition, as they stand in parts lists and on drawings
     hardness: str  #: in words, with its scale
@@ -74,10 +68,8 @@ Treatment = Literal["case_hardened", "nitrided", "through_hardened"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GearGrade:
+class GearGrade(Strict):
     """A steel grade in one heat treatment, as ISO 6336-5 rates it."""
-
-    __pydantic_config__ = _STRICT
 
     name: str  #: steel and treatment in words, as it stands in parts lists
     treatment: Treatment  #: which S-N curves and notch factors apply
@@ -110,10 +102,8 @@ class Elastomer(Material):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Materials:
+class Materials(Strict):
     """All materials: one table of ``data/materials.toml`` each."""
-
-    __pydantic_config__ = _STRICT
 
     aluminium: ElasticMaterial
     steel: ElasticMaterial

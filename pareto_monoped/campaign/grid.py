@@ -11,9 +11,9 @@ from math import prod
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from pareto_monoped.config import checked, read_toml
+from pareto_monoped.config import Strict, checked, read_toml
 from pareto_monoped.definition.study import Study, filled
 from pareto_monoped.definition.study_file import file_values, with_objectives, with_paths
 from pareto_monoped.errors import StudyError, complaint
@@ -104,10 +104,8 @@ def _digest(value: Any) -> str:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _File:
+class _File(Strict):
     """Keys of a campaign file; the study and the axes are checked separately."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: Annotated[str, Field(min_length=1, max_length=200)]
     description: Annotated[str, Field(max_length=2000)] = ""
@@ -116,10 +114,8 @@ class _File:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Axes:
+class _Axes(Strict):
     """The axes that a campaign may have, each a list of values for one key of a study file."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     motors: Values | None = None
     hip_motors: Values | None = None

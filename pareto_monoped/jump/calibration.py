@@ -13,33 +13,28 @@ from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from pareto_monoped.config import checked, read_toml
+from pareto_monoped.config import NotNegative, Positive, Strict, checked, read_toml
 from pareto_monoped.errors import CalibrationError, InputError, unknown_name
 from pareto_monoped.jump.calibration_defaults import DEFAULT
 from pareto_monoped.jump.controller_record import MOST_DELAY
 from pareto_monoped.robot.population import MassOptions
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 Share = Annotated[float, Field(gt=0.0, le=1.0)]
 Impedance = Annotated[float, Field(ge=0.0001, le=0.9999)]
-_STRICT = ConfigDict(extra="forbid")
 
 # Hundreds of times the steps of the shipped calibrations; the limit only keeps a typing error from running for days.
 _MOST_STEPS = 1e6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class EndStop:
+class EndStop(Strict):
     """The rubber bumpers at both ends of one joint's range: spring-dampers that harden with compression
     (``SpringContact``).
 
     A bumper of the parts, fully compressed, leaves the joint within the range that the CAD keeps free (``leg.stops``).
     """
-
-    __pydantic_config__ = _STRICT
 
     #: lower_rad, upper_rad: angles at which the joint meets the bumpers
     lower_rad: float
@@ -57,10 +52,8 @@ class EndStop:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Joints:
+class Joints(Strict):
     """Losses and ends of both joints."""
-
-    __pydantic_config__ = _STRICT
 
     #: damping_n_m_s_per_rad, friction_n_m: viscous and Coulomb friction of each joint
     damping_n_m_s_per_rad: NotNegative
@@ -84,10 +77,8 @@ class Joints:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Drive:
+class Drive(Strict):
     """What lies between motor and joint."""
-
-    __pydantic_config__ = _STRICT
 
     mesh_losses: bool  #: whether the gearbox has losses
     chain_efficiency: Share = 1.0  #: of the chain that drives the knee
@@ -106,7 +97,7 @@ class Drive:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SpringContact:
+class SpringContact(Strict):
     """The contact of a rubber foot with the floor: a spring-damper that hardens with compression.
 
     MuJoCo's impedance rises linearly with the compression r, up to d = ``impedance`` at w = ``width_m``. With u = r / w
@@ -114,8 +105,6 @@ class SpringContact:
     in the model of Hunt and Crossley (1975), which makes the jump well-posed. While the foot touches, the constraint
     adds a virtual mass d u / (1 - d u) / A, where A is the inverse mass of the foot's body.
     """
-
-    __pydantic_config__ = _STRICT
 
     kind: Literal["spring"]
     #: stiffness_n_per_m, damping_n_s_per_m: normal to the floor, at a compression of ``width_m`` and beyond
@@ -128,10 +117,8 @@ class SpringContact:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MujocoContact:
+class MujocoContact(Strict):
     """The contact of the foot, given by MuJoCo's own parameters (its documentation, "Solver parameters")."""
-
-    __pydantic_config__ = _STRICT
 
     kind: Literal["mujoco"]
     time_constant_s: Positive
@@ -143,10 +130,8 @@ class MujocoContact:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ContactGate:
+class ContactGate(Strict):
     """Torque whenever the foot touches the floor, decided at every step, as the paper words it."""
-
-    __pydantic_config__ = _STRICT
 
     rule: Literal["contact"]
     #: True takes the contact of the state before the last step, which is what MuJoCo's contact list holds after a step;
@@ -155,10 +140,8 @@ class ContactGate:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FadeGate:
+class FadeGate(Strict):
     """Torque that fades to zero as the foot rises to a clearance c: times 1 - s(c / length_m), s(u) = 3 u^2 - 2 u^3."""
-
-    __pydantic_config__ = _STRICT
 
     rule: Literal["fade"]
     length_m: Positive  #: clearance at which no torque is left
@@ -166,22 +149,18 @@ class FadeGate:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Flight:
+class Flight(Strict):
     """Springs and dampers that the motors imitate, within their peak torque, to pull the leg to its start pose in
     flight.
     """
-
-    __pydantic_config__ = _STRICT
 
     stiffness_n_m_per_rad: Positive
     damping_n_m_s_per_rad: NotNegative
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Controller:
+class Controller(Strict):
     """What the paper's final text leaves open about the virtual controller (section II-B)."""
-
-    __pydantic_config__ = _STRICT
 
     #: L0, rest length of the virtual spring; 10 m in a passage missing from the final text
     rest_length_m: Positive = 10.0
@@ -191,10 +170,8 @@ class Controller:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Simulation:
+class Simulation(Strict):
     """Integration of the equations of motion."""
-
-    __pydantic_config__ = _STRICT
 
     integrator: Literal["Euler", "RK4", "implicitfast", "implicit"]  #: MuJoCo's integrator
     timestep_s: Positive  #: step of the integrator
@@ -247,7 +224,7 @@ def _whole(number: float) -> bool:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Calibration:
+class Calibration(Strict):
     """Everything that a jump depends on besides the robot; every result names its calibration.
 
     Example:
@@ -258,8 +235,6 @@ class Calibration:
         >>> slippery.label
         'slippery-3'
     """
-
-    __pydantic_config__ = _STRICT
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]+$")]
     version: Annotated[int, Field(ge=1)]
