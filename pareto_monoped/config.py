@@ -22,8 +22,7 @@ Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 
 MAX_TOML_BYTES = 1_000_000  #: Our own choice: a hundred times our longest file.
-MAX_JSON_CHARACTERS = 64_000_000
-"""Our own choice: the kept front of a study of 200,000 trials, all of them on it, has 1.4 million."""
+MAX_JSON_CHARACTERS = 64_000_000  #: Our own choice: the kept front of a study of 200,000 trials has 1.4 million.
 MAX_JSON_DEPTH = 64  #: Levels of lists and objects in each other. Our own choice: ours have less than ten.
 _TEXTS = re.compile(r'"(?:[^"\\]|\\.)*"')
 _NO_BRACKETS = re.compile(r"[^\[\]{}]+")

@@ -113,7 +113,7 @@ VARIABLES: tuple[Variable, ...] = (
 # fmt: on
 """The records of all design variables, the paper's seven first; each has name, unit, bounds, meaning and default."""
 NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES)
-"""The names of all variables; the order of the columns of every array of designs."""
+"""In the order of the columns of arrays of designs."""
 PAPER_NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES if variable.default is None)
 """The names of the paper's seven, which come first."""
 DEFAULTS: dict[str, float] = {v.name: v.default for v in VARIABLES if v.default is not None}
@@ -129,8 +129,7 @@ UPPER: NDArray[np.float64] = np.array([variable.upper for variable in VARIABLES 
 LOWER.flags.writeable = False
 UPPER.flags.writeable = False
 
-_SHORTEST_M = 0.05
-"""Of a link, or of a start above the floor. A shorter link has no room for the actuators' output couplings."""
+_SHORTEST_M = 0.05  #: Of a link or start; a shorter link has no room for the actuators' output couplings.
 LEAST: NDArray[np.float64] = np.array(
     [_SHORTEST_M if name in (*LENGTHS, "start_height_m") else 1.0 if name in RATIOS else 0.0 for name in NAMES]
 )  #: The least value of each variable that a design can mean; a ratio of 1 is no gearbox. Shape (number of variables,).
@@ -139,9 +138,7 @@ MOST = 1e9  #: Beyond this value of any variable, numbers overflow.
 
 
 def in_use(values: Mapping[str, ArrayLike]) -> tuple[Variable, ...]:
-    """Return the paper's seven variables and the optional ones of which some value in a table of trials differs from
-    the default.
-    """
+    """Return the paper's seven variables and the optional ones that differ from their defaults anywhere in a table."""
     return tuple(
         variable
         for variable in VARIABLES
@@ -331,12 +328,10 @@ PAPER_CASES: Mapping[str, PaperCase] = _Cases(
 and energy that the authors report."""
 PAPER_MOTOR = "VT8020"  #: The motor of all rows of Table I; the default wherever a motor may be named.
 RuleSet = Literal["paper", "iso6336"]
-"""Names of the sets of rules that gearboxes are chosen by: see ``actuator.settings.ActuatorSettings``."""
+"""Rules that gearboxes are chosen by, see ``actuator.settings.ActuatorSettings``."""
 RULE_SETS: tuple[RuleSet, ...] = get_args(RuleSet)
-DEFAULT_RULES: RuleSet = "iso6336"
-"""The rules of every command and study file that names none. What is stored without rules was made with ``paper``."""
-HEADLINE_HEIGHT_M = PAPER_CASES["C"].height_m
-"""Height at which the least energy of a front is quoted, 0.8 m: that of the paper's best design, Case C."""
+DEFAULT_RULES: RuleSet = "iso6336"  #: Where none are named. Studies stored without rules were made with ``paper``.
+HEADLINE_HEIGHT_M = PAPER_CASES["C"].height_m  #: Height at which a front's least energy is quoted: that of Case C.
 GRAVITY_M_PER_S2 = 9.81  #: The default of MuJoCo, also used for the paper's m g.
 
 
@@ -346,7 +341,5 @@ ConstraintName = Literal[
     "bearing_room", "face_width", "flank_strength", "root_strength", "overload_strength", "output_bearing",
     "planet_bearing",
 ]  # fmt: skip
-"""Names of the rules in ``rules.CONSTRAINTS``, which stand here because settings and command line check names without
-the rules.
-"""
+"""Names of ``rules.CONSTRAINTS``, here for settings and commands that only check names."""
 CONSTRAINT_NAMES: tuple[ConstraintName, ...] = get_args(ConstraintName)

@@ -94,8 +94,7 @@ class CheckError(ParetoMonopedError):
     """An export failed its own checks; the message names the parts and the measured values."""
 
 
-_SHOWN = 400
-"""Most characters that a message shows of a value, such as a list; our own choice, more than any path has."""
+_SHOWN = 400  #: Most characters that a message shows of a value: more than any path has. Our own choice.
 _ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")  #: Where an object is in memory, as Python's own ``repr`` ends.
 
 
@@ -131,9 +130,7 @@ EXTRAS = {
     "parquet": {"pyarrow": "pyarrow"},
     "postgres": {"psycopg": "psycopg[binary]"},
     "video": {"imageio_ffmpeg": "imageio-ffmpeg"},
-}
-"""Extra -> its modules, each with the package that has it; extras whose programs are not called from here are left out.
-"""
+}  #: Extra -> its modules, each with the package that has it; extras that are only run as programs are left out.
 
 
 def require_extra(extra: str, what: str, *, instead: str = "") -> None:

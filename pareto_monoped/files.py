@@ -124,8 +124,7 @@ def _kind(path: Path) -> tuple[bytes, ...]:
 
 
 _MAGIC = (b"\x89PNG", b"GIF8", b"\x1aE\xdf\xa3", b"PAR1")  #: How PNG, GIF, WebM and Parquet files begin.
-_LINES, _TOLD = 5, 24
-"""Lines, and bytes of each, that tell a page or model from others: our own choice, as long as ours have in common."""
+_LINES, _TOLD = 5, 24  #: Lines, and bytes of each, that tell pages and models from others. Our own choice.
 
 
 _FAILURES = {

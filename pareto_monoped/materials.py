@@ -119,8 +119,7 @@ class Materials(Strict):
     fluoroelastomer: Elastomer
 
 
-_GRADES, _ALLOYS = "gear_grades", "alloys"
-"""The tables of the file whose own tables are no materials, but grades of gear steel and alloys."""
+_GRADES, _ALLOYS = "gear_grades", "alloys"  #: Tables of the file whose own tables are gear steels and alloys.
 
 
 @lru_cache(maxsize=1)

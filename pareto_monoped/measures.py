@@ -221,10 +221,7 @@ class JumpMeasures:
 
 
 MEASURES: tuple[Measure, ...] = _described(JumpMeasures)
-"""Every measure of a jump, with its name, unit, meaning and which way is better.
-
-They stand in the order of the fields of ``jump.evaluate.Evaluations`` and of the database columns.
-"""
+"""Every measure of a jump, in the order of the fields of ``jump.evaluate.Evaluations`` and of the database columns."""
 MEASURE_NAMES: tuple[str, ...] = tuple(measure.name for measure in MEASURES)
 ENERGIES: tuple[str, ...] = tuple(measure.name for measure in MEASURES if measure.work_share)
 """What a jump costs: the energies that are never less than the work against gravity, m g (H - start height)."""
@@ -271,8 +268,7 @@ class AuditMeasures:
     # fmt: on
 
 
-AUDIT_MEASURES: tuple[Measure, ...] = _described(AuditMeasures)
-"""Every measure of an audit, in the order of the fields of ``jump.audit.Audits``."""
+AUDIT_MEASURES: tuple[Measure, ...] = _described(AuditMeasures)  #: In the order of the fields of ``jump.audit.Audits``.
 
 _COARSE = f"step doubled and {_PERTURBED}"
 
@@ -295,7 +291,7 @@ class ScreenMeasures:
 
 
 SCREEN_MEASURES: tuple[Measure, ...] = _described(ScreenMeasures)
-"""Every measure of the screen before an audit, in the order of the fields of ``jump.screen.Screened``."""
+"""In the order of the fields of ``jump.screen.Screened``."""
 
 STATISTICS: dict[str, str] = {"mean": "mean", "p05": "5th percentile", "p95": "95th percentile"}
 """What can be asked of a measure under uncertainty: key behind the measure's name, as in "height_m.p05", and words."""
@@ -312,8 +308,7 @@ class _Shares:
     # fmt: on
 
 
-SHARE_MEASURES: tuple[Measure, ...] = _described(_Shares)
-"""Measures of many jumps of one design, each with other values of what is uncertain."""
+SHARE_MEASURES: tuple[Measure, ...] = _described(_Shares)  #: Of many jumps of one design under uncertainty.
 
 
 def _statistic_of(base: Measure, key: str) -> Measure:
@@ -341,16 +336,13 @@ GOAL_NAMES: tuple[str, ...] = (*MEASURE_NAMES, *ROBUST_NAMES)  #: What a study c
 
 OWN = "own_"  #: What the name of a measure that is a function of the user's own begins with.
 _OWN = re.compile(rf"{OWN}[A-Za-z_][A-Za-z0-9_]{{0,99}}")
-OWN_REFERENCE = 1000.0
-"""Corner of the hypervolume for an own objective whose study names none: far off, as values beyond it add no volume."""
+OWN_REFERENCE = 1000.0  #: Corner of the hypervolume, far off, for an own objective whose study names none.
 
 _BY_NAME = {measure.name: measure for measure in (*MEASURES, *AUDIT_MEASURES, *SCREEN_MEASURES, *ROBUST_MEASURES)}
 
 
 def measure(name: str) -> Measure:
-    """Return the measure called ``name``, of a jump, of a design under uncertainty, or of an audit; raise ``KeyError``
-    if unknown.
-    """
+    """Return the measure called ``name`` of a jump, an audit, or a design under uncertainty, or raise ``KeyError``."""
     return _own_measure(name) if is_own(name) else _BY_NAME[name]
 
 

@@ -17,15 +17,10 @@ from pareto_monoped.errors import ParetoMonopedError
 from pareto_monoped.storage.lock import holder
 from pareto_monoped.study.session import Interrupt
 
-MOST_DEATHS = 2
-"""A study whose process was killed so often is given up: our own choice. Once may be chance, such as a full memory."""
-WORTH_S = 10.0
-"""Time left above which a study is stopped and continued with more threads: our own choice, ten times what it takes."""
+MOST_DEATHS = 2  #: Deaths of its process after which a study is given up: one may be chance. Our own choice.
+WORTH_S = 10.0  #: Time left that is worth a restart with more threads: ten times what that takes. Our own choice.
 _LISTEN_S = 0.1
-_SAME_S = 30.0
-"""Within which equal lines about scheduler or workers mean one event: studies notice a lost worker within a second. Our
-own choice.
-"""
+_SAME_S = 30.0  #: Time within which equal lines about scheduler or workers mean one event. Our own choice.
 _HELD_S = 3.0  #: How long to wait for the workers of a coordinator that was killed a moment ago: our own choice.
 
 
@@ -109,8 +104,7 @@ class _Job:
     worker: Processes
     before: int
     seat: int
-    again_with: int | None = None
-    """Number of threads with which it goes on once it has stopped; None: it is not to stop."""
+    again_with: int | None = None  #: Number of threads of its next run if it is to stop for that; else None.
 
 
 @dataclass(slots=True)

@@ -142,9 +142,7 @@ def stored_state(place: Place) -> Stored:
 
 
 def is_ended(place: Place, stored: Stored) -> bool:
-    """Return whether a study has ended as its file says, and no motor or calibration file of the user's may have
-    changed.
-    """
+    """Return whether a study has ended as its file says, with no motor or calibration file of the user's."""
     if stored.summary is None or stored.state not in ("finished", "failed"):
         return False
     names = (*place.study.motors, place.study.calibration)

@@ -18,13 +18,11 @@ from pareto_monoped.definition.study import Study, filled
 from pareto_monoped.definition.study_file import file_values, with_objectives, with_paths
 from pareto_monoped.errors import StudyError, complaint
 
-LONGEST_PART, LONGEST = 48, 180
-"""Letters of one axis in a name, and of a name. Our own choice: file systems take 255, and ``.db-journal`` follows."""
+LONGEST_PART, LONGEST = 48, 180  #: Letters of one axis in a name, and of a name: file systems take 255. Our own choice.
 _UNUSUAL = re.compile(r"[^A-Za-z0-9._+-]+")
 _BEFORE = {"seeds": "seed", "cases": "case-", "evaluations": "jumps", "hip_motors": "hip-", "knee_motors": "knee-"}
 """Axis -> what stands before a value that says too little alone."""
-MOST_STUDIES = 1000
-"""Our own choice: a thousand studies of 8,000 jumps take a day on 16 cores; more is a typing error."""
+MOST_STUDIES = 1000  #: Our own choice: a thousand studies of 8,000 jumps take a day on 16 cores.
 KEYS = {
     "motors": "motor",
     "hip_motors": "hip_motor",
@@ -35,7 +33,7 @@ KEYS = {
     "seeds": "seed",
 }  #: Axis -> key of a study file, where it is not the same word.
 _TABLES = ("variables", "constraints")
-"""Axes whose values are added to the base study's table; those of the others take the place of its value."""
+"""Axes whose values are added to the base study's table instead of replacing it."""
 
 Values = Annotated[list[Any], Field(min_length=1)]
 

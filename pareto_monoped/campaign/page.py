@@ -43,10 +43,8 @@ _SINGULAR = {
     "evaluations": "number of jumps",
 }  #: Axis -> what a value of it is called; others by their own name.
 _STRIP_PX, _EDGE_PX = 130.0, 6.0
-SCRIPTS = ("dom", "scales", "marks", "plots", "chart")
-"""Scripts of the report of a study that this page has, too; its own one follows."""
-MOST_CURVES = 8
-"""Groups that the charts show at first. Our own choice: more bands, one over the other, cannot be told apart."""
+SCRIPTS = ("dom", "scales", "marks", "plots", "chart")  #: Scripts from the report of a study, before the page's own.
+MOST_CURVES = 8  #: Groups that the charts show at first: more overlapping bands cannot be told apart.
 
 
 def section_tables(section: Section) -> str:

@@ -127,12 +127,11 @@ def _write(
 
 
 _SECONDS_BETWEEN_LINES = 5.0
-_NAME_WIDTH = 24
-"""Letters of a study's name in 80 columns; longer ones lose their middle, because their ends tell them apart."""
+_NAME_WIDTH = 24  #: Letters of a study's name in 80 columns; longer ones lose their middle, not their ends.
 _AROUND = 5  #: Lines of the live table that are no studies: what stands above them, their count below, and the prompt.
 
 Reports = tuple[Callable[["Standing"], object], Callable[[str], None]]
-"""What hears of a study whose standing has changed, and of a line for the user."""
+"""Called with a changed standing, and with a line."""
 
 
 @contextmanager

@@ -51,9 +51,7 @@ class _Database(click.Path):
         self._servers = servers
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the ``StudyPlace`` that a user names; raise ``DatabaseError`` for an address of no study, or where
-        only files will do.
-        """
+        """Return the ``StudyPlace``; an address of no study, or where only files will do, is a ``DatabaseError``."""
         if not isinstance(value, str) or not is_address(value):
             return super().convert(value, param, ctx)
         place = place_of(value)
@@ -208,9 +206,7 @@ def motor_options(prefix: str = "") -> Callable[[Callable[..., Any]], Callable[.
 
 
 def chosen_motors(motor: str | None, hip_motor: str | None, knee_motor: str | None) -> tuple[str, str]:
-    """Return names or files of the hip's and the knee's motor; one joint's alone, or beside ``--motor``, is a usage
-    error.
-    """
+    """Return names or files of the hip's and the knee's motor; options that contradict each other are a usage error."""
     if hip_motor is None and knee_motor is None:
         return motor or PAPER_MOTOR, motor or PAPER_MOTOR
     if motor is not None:

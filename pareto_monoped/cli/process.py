@@ -93,12 +93,10 @@ def _flush() -> None:
             continue
 
 
-TRACEBACK = "PARETO_MONOPED_TRACEBACK"
-"""Environment variable that makes faults of the program show where they come from."""
+TRACEBACK = "PARETO_MONOPED_TRACEBACK"  #: Environment variable that makes faults of the program show their origin.
 _KINDS = {"integer": "whole number", "float": "number"}
 _KIND = re.compile(rf"is not a valid ({'|'.join(_KINDS)})(?: range)?")  #: How click calls what must be a number.
-_LONGEST = 1200
-"""Characters of a message; of longer ones, such as on a text of a megabyte, the middle is left out. Our own choice."""
+_LONGEST = 1200  #: Characters of a message; longer ones, such as of a megabyte, lose their middle. Our own choice.
 
 
 def told(error: BaseException) -> tuple[str, int]:

@@ -12,14 +12,9 @@ from weakref import WeakKeyDictionary
 T = TypeVar("T")
 Item = TypeVar("Item")
 
-LEAST_TASK_S = 0.25
-"""Least work in a task. Handing a task to a cluster takes about a millisecond, which is then below one percent."""
-_FIRST_ROWS = 64
-"""Rows of the task that shows how long a row takes. Our own choice: a tenth of a second of jumps on one core."""
-AT_ONCE = 16
-"""Pieces of work that wait for an executor at a time: the results of 8,000 jumps each take 50 MB together. Our own
-choice.
-"""
+LEAST_TASK_S = 0.25  #: Least work in a task: giving one to a cluster takes a millisecond, below one percent of it.
+_FIRST_ROWS = 64  #: Rows of the task that measures the time per row: a tenth of a second of jumps. Our own choice.
+AT_ONCE = 16  #: Pieces that wait for an executor at a time: results of 8,000 jumps each take 50 MB. Our own choice.
 _REMEMBERED = 9  #: Tasks whose speed counts. Our own choice: enough that one slow task does not decide.
 
 

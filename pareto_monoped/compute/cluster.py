@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 
 _NEWS_S = 0.5  #: Between two questions to the scheduler who its workers are.
 _ANSWER_S = 5.0  #: For the answer; a network that is cut for longer than this gives no news, see ``_SILENT_S``.
-_SILENT_S = 30.0
-"""Without news before the scheduler counts as lost: three times as long as a short cut of the network."""
+_SILENT_S = 30.0  #: Time without news before the scheduler counts as lost: three times a short network failure.
 _CONNECT_S = 10.0  #: For the first connection: then a wrong address is likelier than a slow scheduler.
 _NO_WORKER = "has no worker"
 
@@ -58,9 +57,7 @@ class DaskWorkers(Staff):
         return "does not answer (the connection has ended)" if broken else self._state
 
     def threads(self) -> int:
-        """Return the number of threads of all workers together at this moment; raise ``WorkerError`` if no scheduler
-        answers.
-        """
+        """Return the present number of threads of all workers; raise ``WorkerError`` if no scheduler answers."""
         try:
             return sum(self._ask().values())
         except Exception as problem:  # see ``_listen``
@@ -169,9 +166,7 @@ class DaskWorkers(Staff):
 
 
 def threads_of(address: str) -> int:
-    """Return the present number of threads of a scheduler's workers, 0 before the first comes; raises as
-    ``DaskWorkers`` does.
-    """
+    """Return the present number of threads of a scheduler's workers, which may be 0; raises as ``DaskWorkers`` does."""
     with closing(DaskWorkers(address)) as workers:
         return workers.threads()
 

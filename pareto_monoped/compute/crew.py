@@ -21,11 +21,9 @@ from pareto_monoped.errors import WorkerError
 
 _TICK_S = 0.1  #: Between two looks at the clock. Our own choice: short beside a task.
 _AHEAD = 1  #: Tasks given to a worker beyond those that it does at a time: the next is then already there.
-_MOST_LOSSES = 4
-"""Workers that a task may lose before it is given up: it may be the task that ends them. Our own choice."""
+_MOST_LOSSES = 4  #: Workers that a task may lose before it fails: it may be what ends them. Our own choice.
 _STILLBORN = 6  #: Workers that may end before their first answer, one after the other. Our own choice.
-_PATIENT_S = 2.0
-"""Without any worker before the user hears of it. Our own choice: a scheduler lists its workers within a second."""
+_PATIENT_S = 2.0  #: Time without workers before the user hears of it; a scheduler lists them within a second.
 _LATE = 4.0  #: A task that takes so many times as long as usual is also given to a worker that has nothing to do.
 
 
@@ -53,8 +51,7 @@ class Limits:
     absent_s: float = 60.0  #: How long to wait for scheduler and workers before giving up.
 
 
-EXPORT_LIMITS = Limits(task_s=900.0)
-"""For tasks that are exports: each takes ten seconds to a minute, on a busy machine several. Our own choice."""
+EXPORT_LIMITS = Limits(task_s=900.0)  #: For exports: each takes ten seconds to several minutes. Our own choice.
 
 
 class Staff(ABC):

@@ -24,11 +24,9 @@ from typing import Any
 from pareto_monoped.compute.crew import LostError, Member, Staff, Task
 
 GRACE_S = 1.0  #: From the word to end until a process is killed. Our own choice: a user waits two seconds at most.
-_TERMINAL = {signal.SIGINT, signal.SIGHUP}
-"""A terminal sends these to all its processes. The one that started the others answers them, and tells the others."""
+_TERMINAL = {signal.SIGINT, signal.SIGHUP}  #: A terminal sends these to all its processes; only the first answers.
 _PROGRAM = "import sys; from pareto_monoped.compute.processes import serve; serve(int(sys.argv[1]))"
-_STOP, _END = b"stop", b"end"
-"""What a process is told besides its tasks, which are pickles and so begin otherwise; a number follows ``stop``."""
+_STOP, _END = b"stop", b"end"  #: What a process is told besides tasks, which are pickles; a number follows ``stop``.
 _RESULT, _PROBLEM, _MESSAGE = b"r", b"p", b"m"  #: Before each pickle that a process sends back.
 
 

@@ -26,12 +26,10 @@ from pareto_monoped.robot.population import robot_arrays
 
 Floats = NDArray[np.float64]
 
-PERTURBATION = 1e-6
-"""Relative size of the perturbations: half a micrometre of a link, far below any tolerance of manufacture."""
-SPREAD_PERCENTILE = 90.0
-"""Percentile of the changes under perturbations that is compared with the limit; the worst change is only recorded."""
+PERTURBATION = 1e-6  #: Relative size of the perturbations: half a micrometre of a link, less than any tolerance.
+SPREAD_PERCENTILE = 90.0  #: Percentile of the changes under perturbations that has a limit; the worst has none.
 PERTURBED = tuple(name for name in PAPER_NAMES if name not in RATIOS)
-"""Variables that are perturbed. A gear ratio only selects a gearbox: the robot is the same between two gearboxes."""
+"""Without gear ratios, which only select a gearbox."""
 FIRST_COPIES = 2  #: How many perturbed copies of a design jump first in a brief audit.
 CLEAR_SPREAD, CLEAR_HALF_STEP = 0.01, 0.2
 """Shares of their limits that the changes of these copies and of the halved step may reach if no more copies are to
@@ -143,8 +141,7 @@ def audit(
     known: Jumps | None = None,
     brief: bool = False,
 ) -> Audits:
-    """Audit the jumps of designs, which may be ``known`` already; ``executor`` makes other jumps in place of the
-    threads.
+    """Audit the jumps of designs, which may be ``known`` already; ``executor`` makes the others in place of threads.
 
     Each design has ``perturbations`` copies; the same ``seed`` gives the same audit. A brief audit measures only what
     has a limit, and perturbs less often where the result is clear.
@@ -239,8 +236,7 @@ def _balances(setup: Setup, values: Floats, workers: int) -> Floats:
 
 
 def _with_two_periods(values: Floats, jumps: Evaluator, quarter: Evaluations) -> tuple[Evaluations, Evaluations]:
-    """Return the jumps with a quarter of the step and no delay, with the control period as it is and with a quarter of
-    it.
+    """Return jumps at a quarter of the step without delay, with the full control period and with a quarter of it.
 
     Without delay, ``quarter``, the jumps under ``finer(calibration, 4)``, are one of both.
     """

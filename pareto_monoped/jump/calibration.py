@@ -30,8 +30,7 @@ _MOST_STEPS = 1e6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EndStop(Strict):
-    """The rubber bumpers at both ends of one joint's range: spring-dampers that harden with compression
-    (``SpringContact``).
+    """The rubber bumpers at both ends of one joint's range, which harden as in ``SpringContact``.
 
     A bumper of the parts, fully compressed, leaves the joint within the range that the CAD keeps free (``leg.stops``).
     """
@@ -150,9 +149,7 @@ class FadeGate(Strict):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Flight(Strict):
-    """Springs and dampers that the motors imitate, within their peak torque, to pull the leg to its start pose in
-    flight.
-    """
+    """Springs and dampers that the motors imitate to pull the leg to its start pose in flight, within peak torque."""
 
     stiffness_n_m_per_rad: Positive
     damping_n_m_s_per_rad: NotNegative

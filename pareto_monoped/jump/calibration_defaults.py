@@ -7,8 +7,7 @@ from pareto_monoped.errors import CalibrationError, InputError, complaint
 
 DEFAULT = "reference"
 _PAPER = "paper"
-OWN_CALIBRATION = "own:"
-"""In a study, how the name of a calibration begins whose values stand only in the study's database."""
+OWN_CALIBRATION = "own:"  #: How the name of a calibration begins whose values stand only in the study's database.
 
 
 def rules_for(

@@ -33,9 +33,7 @@ _quiet_before = (True, True)
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Let MuJoCo write neither to a file ``MUJOCO_LOG.TXT`` nor to standard output; the last user restores the
-    settings.
-    """
+    """Let MuJoCo write neither to ``MUJOCO_LOG.TXT`` nor to standard output; the last user restores the settings."""
     global _users, _quiet_before
     import mujoco
 

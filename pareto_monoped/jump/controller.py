@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 HIP, KNEE = 0, 1
 
 RUNNING, FLYING, APEX, NO_LIFT_OFF, SANK, DIVERGED, TIMEOUT = range(7)
-"""Values of ``status``; the jump goes on up to and including ``FLYING``."""
+"""``status``; a jump goes on through ``FLYING``."""
 
 SANK_M = 0.1  #: A base this low has fallen: half its actuators' diameter is 0.05 m.
 SPEED_LIMIT = 1e4  #: Speed of a joint or slide (rad/s, m/s) beyond which the simulation has failed.

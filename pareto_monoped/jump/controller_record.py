@@ -7,8 +7,7 @@
 import numpy as np
 
 TOUCH_M = 1e-9  #: Clearance that still counts as touching, because of rounding in the start pose.
-MOST_DELAY = 8
-"""Control periods that a command can be late: 3 ms (bus and driver) at a period of 0.5 ms, and two more."""
+MOST_DELAY = 8  #: Control periods that a command can be late: 3 ms (bus and driver) at 0.5 ms each, and two more.
 
 _ONE, _BOTH, _STATE = np.float64, (np.float64, (2,)), (np.float64, (4,))
 _COMMANDS = (np.float64, (MOST_DELAY + 1, 4))

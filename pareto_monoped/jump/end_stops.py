@@ -21,8 +21,7 @@ from pareto_monoped.robot.population import RobotArrays
 Floats = NDArray[np.float64]
 EndStops = tuple[EndStop | None, EndStop | None]  #: Of hip and knee; None for a joint that turns freely.
 
-IMPACT_M_PER_S = 2.0
-"""Speed at the bumper of the impact that gives back what the elastomer does; knees meet their stop with about that."""
+IMPACT_M_PER_S = 2.0  #: Speed at the bumper for which the elastomer's rebound holds, about that of knees at their stop.
 IMPACT_KG_M2 = 0.031  #: Inertia of that impact: 1 / A of the knee, the median of 60 random designs (0.019 to 0.048).
 IMPEDANCE = 0.6
 """D of the stops of parts. The slow torque fits that of the part about as well with any D from 0.1 to 0.6. By

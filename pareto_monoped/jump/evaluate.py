@@ -61,8 +61,7 @@ class Evaluations(JumpMeasures):
 
 
 class Evaluator:
-    """Evaluates designs with the actuators of one or several kits of motors, under one calibration, on ``workers``
-    threads.
+    """Evaluates designs with the actuators of one or several kits of motors under one calibration, on threads.
 
     To the last bit, the result of a design does not depend on the rest of the batch, its order or the number of
     workers. ``actuator_map`` is of the first kit, ``actuator_maps`` of every kit.

@@ -35,10 +35,7 @@ class Facts:
     system: str
     machine: str
     numbers: str  #: Digest of every measure of the probe designs under every shipped calibration, to the last bit.
-    linear_algebra: str
-    """Kind of processor for which OpenBLAS was chosen: not compared, but the likeliest reason of other numbers between
-    hosts.
-    """
+    linear_algebra: str  #: Processor for which OpenBLAS was chosen: not compared, but likely why hosts differ.
 
 
 _lock = threading.Lock()
@@ -99,9 +96,7 @@ def _facts_with(extra: str | None) -> Facts:
 
 
 def greeting(threads: int, extra: str | None = None) -> Facts:
-    """Do the first task of a worker: set the threads of its tasks, warm up, and return its facts with an extra's
-    versions.
-    """
+    """Do the first task of a worker: set the threads of its tasks, warm up, and return its facts."""
     set_task_threads(threads)
     return _facts_with(extra)
 

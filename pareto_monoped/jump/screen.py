@@ -80,9 +80,7 @@ def screened(
     executor: Executor | None = None,
     seed: int = 0,
 ) -> Screened:
-    """Compare the ``known`` jumps of designs with coarse ones. To the last bit, no design's result depends on the
-    others.
-    """
+    """Compare ``known`` jumps of designs with coarse ones; no design's result depends on the others in any bit."""
     if executor is not None and len(designs):
         text = setup_text([actuator_map], calibration)
 

@@ -104,9 +104,7 @@ def take(record: T, rows: NDArray[np.intp]) -> T:
 
 
 def joined(records: Sequence[T]) -> T:
-    """Return one record with the rows of all, see ``take``; what is not an array or tuple must be the same in all of
-    them.
-    """
+    """Return one record with the rows of all, see ``take``; everything else must be the same in all of them."""
     if len(records) == 1:
         return records[0]
     together: dict[str, Any] = {}
