@@ -29,6 +29,7 @@ from numpy.typing import ArrayLike, NDArray
 from pareto_monoped.errors import DesignError, complaint, unknown_name
 
 _T = TypeVar("_T")
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,14 +124,14 @@ RATIOS = ("knee_ratio", "hip_ratio")
 PAPER_CONTROL = ("stiffness_n_per_m", "damping_n_s_per_m", "torsional_stiffness_n_m_per_rad")
 """K, C and T of the virtual controller."""
 CONTROL = (*PAPER_CONTROL, *DEFAULTS)  #: Everything that a jump needs besides the robot.
-LOWER: NDArray[np.float64] = np.array([variable.lower for variable in VARIABLES if variable.default is None])
-UPPER: NDArray[np.float64] = np.array([variable.upper for variable in VARIABLES if variable.default is None])
+LOWER: Floats = np.array([variable.lower for variable in VARIABLES if variable.default is None])
+UPPER: Floats = np.array([variable.upper for variable in VARIABLES if variable.default is None])
 """The paper's bounds of its seven variables, shape (7,)."""
 LOWER.flags.writeable = False
 UPPER.flags.writeable = False
 
 _SHORTEST_M = 0.05  #: Of a link or start; a shorter link has no room for the actuators' output couplings.
-LEAST: NDArray[np.float64] = np.array(
+LEAST: Floats = np.array(
     [_SHORTEST_M if name in (*LENGTHS, "start_height_m") else 1.0 if name in RATIOS else 0.0 for name in NAMES]
 )  #: The least value of each variable that a design can mean; a ratio of 1 is no gearbox. Shape (number of variables,).
 LEAST.flags.writeable = False
@@ -147,7 +148,7 @@ def in_use(values: Mapping[str, ArrayLike]) -> tuple[Variable, ...]:
     )
 
 
-def complete(designs: ArrayLike) -> NDArray[np.float64]:
+def complete(designs: ArrayLike) -> Floats:
     """Return designs with a column for each variable, of which optional ones may have been left out at their defaults.
 
     ``designs`` has shape (..., 7), the paper's variables, or (..., number of variables), in the order of ``NAMES``.
@@ -168,14 +169,14 @@ def complete(designs: ArrayLike) -> NDArray[np.float64]:
     return np.concatenate([values, optional], axis=-1)
 
 
-def complete_control(control: ArrayLike) -> NDArray[np.float64]:
+def complete_control(control: ArrayLike) -> Floats:
     """Return values in the order of ``CONTROL``, shape (n, 6), from K, C and T, shape (n, 3), or from all of them."""
     values = np.atleast_2d(np.asarray(control, dtype=np.float64))
     missing = [DEFAULTS[name] for name in CONTROL[values.shape[1] :]]
     return np.concatenate([values, np.broadcast_to(missing, (len(values), len(missing)))], axis=1)
 
 
-def columns(designs: ArrayLike, names: Sequence[str]) -> NDArray[np.float64]:
+def columns(designs: ArrayLike, names: Sequence[str]) -> Floats:
     """Return a C-ordered copy of some variables' values, such as ``CONTROL``; for ``designs`` see ``complete``."""
     return np.take(complete(designs), [NAMES.index(name) for name in names], axis=-1)
 
@@ -246,7 +247,7 @@ class Design:
     rest_length_m: float = REST_LENGTH_M
     start_height_m: float = BASE_START_HEIGHT_M
 
-    def as_array(self) -> NDArray[np.float64]:
+    def as_array(self) -> Floats:
         """Return the values in the order of ``NAMES``, shape (number of variables,)."""
         return np.array([getattr(self, name) for name in NAMES], dtype=np.float64)
 

@@ -23,9 +23,8 @@ from typing import Annotated, Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import BASE_START_HEIGHT_M
+from pareto_monoped.design import BASE_START_HEIGHT_M, Floats
 
-Floats = NDArray[np.float64]
 Direction = Literal["maximise", "minimise"]
 
 

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.api.given import truth_of
 from pareto_monoped.api.studies import StoredStudy
+from pareto_monoped.design import Floats
 from pareto_monoped.errors import InputError, complaint, unknown_name
 from pareto_monoped.measures import MEASURE_NAMES, is_goal, measure
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 Backend = Literal["plotly", "matplotlib"]
-Floats = NDArray[np.float64]
 # Okabe and Ito's colours, which the report also uses.
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#b0548a", "#b87d00", "#2f9bd8")
 _PALE = 0.25

@@ -8,15 +8,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.campaign.folder import Place, Stored, stored_state
 from pareto_monoped.campaign.grid import Campaign
+from pareto_monoped.design import Floats
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.pareto.trade_offs import knee
 from pareto_monoped.storage.reader import read_study
-
-Floats = NDArray[np.float64]
 
 LEVELS_M = (0.7, 0.8, 0.9)  #: Heights at which tables say what they cost: those of the report of a study.
 LOW, HIGH = 0.1, 0.9  #: Ends of the bands: what a tenth of the studies and nine tenths of them reach.

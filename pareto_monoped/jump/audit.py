@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from pareto_monoped.actuator.ratiomap import Maps
 from pareto_monoped.compute.chunks import pace_of, spread
 from pareto_monoped.compute.threads import task_threads
-from pareto_monoped.design import CONTROL, DEFAULTS, NAMES, PAPER_NAMES, RATIOS, columns, complete
+from pareto_monoped.design import CONTROL, DEFAULTS, NAMES, PAPER_NAMES, RATIOS, Floats, columns, complete
 from pareto_monoped.jump.balance import balance_errors
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.controller_record import MOST_DELAY
@@ -23,8 +23,6 @@ from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.shared import Setup, built, evaluator_of, setup_text
 from pareto_monoped.measures import AuditMeasures, measure
 from pareto_monoped.robot.population import robot_arrays
-
-Floats = NDArray[np.float64]
 
 PERTURBATION = 1e-6  #: Relative size of the perturbations: half a micrometre of a link, less than any tolerance.
 SPREAD_PERCENTILE = 90.0  #: Percentile of the changes under perturbations that has a limit; the worst has none.

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.design import Floats
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.callback import quiet
 from pareto_monoped.jump.end_stops import end_stops, slow_torque_n_m
@@ -19,7 +20,6 @@ from pareto_monoped.jump.single import Moment, constraint_forces, moments
 from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import RobotArrays
 
-Floats = NDArray[np.float64]
 HIP, KNEE = -2, -1
 
 

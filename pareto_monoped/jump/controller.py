@@ -8,14 +8,9 @@ this file because numba recompiles a function only if its own file or the type o
 import math
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from pareto_monoped.compute.compiled import compiled
-from pareto_monoped.design import GRAVITY_M_PER_S2
+from pareto_monoped.design import GRAVITY_M_PER_S2, Floats
 from pareto_monoped.jump.controller_record import TOUCH_M
-
-Floats = NDArray[np.float64]
 
 HIP, KNEE = 0, 1
 

@@ -11,14 +11,13 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.compute.compiled import compiled
+from pareto_monoped.design import Floats
 from pareto_monoped.jump.calibration import EndStop, Joints
 from pareto_monoped.leg.stops import JointStop
 from pareto_monoped.robot.population import RobotArrays
 
-Floats = NDArray[np.float64]
 EndStops = tuple[EndStop | None, EndStop | None]  #: Of hip and knee; None for a joint that turns freely.
 
 IMPACT_M_PER_S = 2.0  #: Speed at the bumper for which the elastomer's rebound holds, about that of knees at their stop.

@@ -14,6 +14,7 @@ from pareto_monoped.design import (
     LEAST,
     MOST,
     NAMES,
+    Floats,
     columns,
     complete,
     complete_control,
@@ -28,8 +29,6 @@ from pareto_monoped.robot.population import JointStops, RobotArrays, robot_array
 from pareto_monoped.robot.units import JOINTS
 from pareto_monoped.strength.factors import safeties, strength_factors
 from pareto_monoped.strength.joint import LOAD_NAMES, loads_of
-
-Floats = NDArray[np.float64]
 
 STATUSES = ("ok", "bad_input", "no_gearbox", "cannot_stand", "no_lift_off", "timeout", "diverged")
 """How a jump can end. Every status but ``ok`` comes with a reason, and without height and energy."""

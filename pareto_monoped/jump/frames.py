@@ -10,14 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import GRAVITY_M_PER_S2, complete_control
+from pareto_monoped.design import GRAVITY_M_PER_S2, Floats, complete_control
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.model import start_pose
 from pareto_monoped.jump.population import Population, Records, prepare
 from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import RobotArrays
-
-Floats = NDArray[np.float64]
 
 FRAME_COLUMNS = (
     "base_x_m", "base_z_m", "hip_rad", "knee_rad", "hip_rad_per_s", "knee_rad_per_s",

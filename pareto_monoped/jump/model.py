@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import GRAVITY_M_PER_S2
+from pareto_monoped.design import GRAVITY_M_PER_S2, Floats
 from pareto_monoped.jump.calibration import Calibration, Drive, Joints, SpringContact
 from pareto_monoped.jump.end_stops import EndStops, end_stops
 from pareto_monoped.robot.population import RobotArrays
@@ -91,8 +91,6 @@ def compression_m(contact: SpringContact, force_n: NDArray[np.float64]) -> NDArr
     linear = force_n / contact.stiffness_n_per_m
     return np.where(linear < width, r, linear)
 
-
-Floats = NDArray[np.float64]
 
 # Body numbers in the model; the world is 0.
 BASE, THIGH, SHANK = 1, 2, 3

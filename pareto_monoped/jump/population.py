@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, PAPER_CONTROL, REST_LENGTH_M, complete_control
+from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, PAPER_CONTROL, REST_LENGTH_M, Floats, complete_control
 from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
@@ -19,7 +19,6 @@ from pareto_monoped.jump.variations import Variations, vary_fields, vary_records
 from pareto_monoped.robot.population import RobotArrays
 from pareto_monoped.robot.units import BODIES
 
-Floats = NDArray[np.float64]
 Records = NDArray[np.void]
 
 # Steps between two checks for jumps that are over; a jump wastes half of this on average.

@@ -17,13 +17,12 @@ from pareto_monoped.actuator.search import map_of
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.compute.chunks import Pace, pace_of, spread
 from pareto_monoped.compute.threads import task_threads
-from pareto_monoped.design import complete
+from pareto_monoped.design import Floats, complete
 from pareto_monoped.errors import InputError
 from pareto_monoped.jump.calibration import Calibration, calibration_of, calibration_values
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.variations import Variations, joined, take
 
-Floats = NDArray[np.float64]
 Setup = tuple[tuple[JointMaps, ...], Calibration]  #: Gearboxes of every kit of motors, and the jump model.
 _SOURCE = "a task's setup"
 

@@ -9,18 +9,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.actuator.ratiomap import Maps
-from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, Design, columns
+from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, Design, Floats, columns
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.callback import quiet
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
-
-Floats = NDArray[np.float64]
 
 TRACE_COLUMNS = (
     "time_s", "base_x_m", "base_z_m", "base_x_m_per_s", "base_z_m_per_s",

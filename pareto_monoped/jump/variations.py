@@ -12,15 +12,13 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import CONTROL, PAPER_CONTROL
+from pareto_monoped.design import CONTROL, PAPER_CONTROL, Floats
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.robot.population import RobotArrays
 from pareto_monoped.robot.units import BODIES
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
