@@ -38,38 +38,11 @@ if TYPE_CHECKING:
     from pareto_monoped.study.pymoo_problem import MonopedProblem
 
 __all__ = [
-    "MEASURES",
-    "PAPER_CASES",
-    "VARIABLES",
-    "Calibration",
-    "Design",
-    "MonopedProblem",
-    "Motor",
-    "OptunaObjective",
-    "ParetoMonopedError",
-    "Picked",
-    "Scores",
-    "Space",
-    "StoredStudy",
-    "Study",
-    "__version__",
-    "actuator_map",
-    "build_robot",
-    "export",
-    "export_trial",
-    "load_calibration",
-    "load_motor",
-    "load_study",
-    "plot_actuators",
-    "plot_front",
-    "plot_jump",
-    "resume",
-    "robust",
-    "run",
-    "simulate",
-    "trace",
-    "write_report",
-]
+    "MEASURES", "PAPER_CASES", "VARIABLES", "Calibration", "Design", "MonopedProblem", "Motor", "OptunaObjective",
+    "ParetoMonopedError", "Picked", "Scores", "Space", "StoredStudy", "Study", "__version__", "actuator_map",
+    "build_robot", "export", "export_trial", "load_calibration", "load_motor", "load_study", "plot_actuators",
+    "plot_front", "plot_jump", "resume", "robust", "run", "simulate", "trace", "write_report",
+]  # fmt: skip
 
 _HOMES = {
     "actuator.motor": ("Motor",),

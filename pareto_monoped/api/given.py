@@ -201,7 +201,6 @@ def _of_columns(table: "Mapping[str, Any] | DataFrame") -> Given:
 
 
 def _near(name: object) -> str:
-    """Return what to do about an unknown column."""
     for known in (NAMES, _known()):
         if near := difflib.get_close_matches(str(name), known, n=1):
             return f"did you mean {near[0]!r}?"

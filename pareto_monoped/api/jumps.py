@@ -270,7 +270,6 @@ _NAME = "a name or the path of a TOML file"
 
 
 def _name(given: StrPath, what: str, error: type[MotorError] | type[CalibrationError], allowed: str = _NAME) -> str:
-    """Return a name or path as text."""
     if isinstance(given, str | PathLike) and isinstance(text := fspath(given), str):
         try:
             Path(text).is_file()

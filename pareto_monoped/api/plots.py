@@ -183,13 +183,10 @@ def _title(name: str) -> str:
 
 
 def _drawn(panels: Sequence[_Panel], backend: Backend) -> Any:
-    if not isinstance(backend, str):
+    drawn_by = {"plotly": _by_plotly, "matplotlib": _by_matplotlib}
+    if not isinstance(backend, str) or backend not in drawn_by:
         raise InputError(complaint("backend", backend, "'plotly' or 'matplotlib'", "correct it"))
-    if backend == "plotly":
-        return _by_plotly(panels)
-    if backend == "matplotlib":
-        return _by_matplotlib(panels)
-    raise InputError(complaint("backend", backend, "'plotly' or 'matplotlib'", "correct it"))
+    return drawn_by[backend](panels)
 
 
 def _by_plotly(panels: Sequence[_Panel]) -> Any:

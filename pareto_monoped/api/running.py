@@ -83,7 +83,6 @@ def limits_of(constraints: Limits) -> tuple[dict[str, Any], dict[str, OwnFunctio
 
 
 def _flattened(name: str, limits: Any) -> dict[str, Any]:
-    """Return the limits of one measure in their stored form."""
     if not isinstance(limits, Mapping):
         return {name: limits}
     if not limits or not set(limits) <= {"min", "max"}:
@@ -368,7 +367,6 @@ def robust(
 
 
 def _numbers(trials: Any) -> list[int] | None:
-    """Return numbers of trials."""
     if trials is None:
         return None
     listed = as_list(trials)

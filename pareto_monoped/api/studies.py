@@ -14,19 +14,7 @@ from pareto_monoped.definition.given import as_list, count_of
 from pareto_monoped.design import NAMES, Design
 from pareto_monoped.errors import DesignError, InputError, SelectionError, StudyError, complaint
 from pareto_monoped.measures import is_own, near_measures
-from pareto_monoped.pareto.selectors import (
-    CONDITION_NAMES,
-    Among,
-    Chooser,
-    Compromise,
-    Condition,
-    Knee,
-    MaxEnergy,
-    Nearest,
-    Tradeoff,
-    Trial,
-    Weights,
-)
+from pareto_monoped.pareto import selectors
 from pareto_monoped.storage.address import is_address
 from pareto_monoped.storage.place import StudyPlace, place_of
 
@@ -163,7 +151,7 @@ class StoredStudy:
                 "pick: nothing is asked for; give by='knee', or min_height_m, or one of the other arguments"
             )
         refuse_empty(front, self.data)
-        found = pick(front, Among(conditions=conditions, chooser=ways[0] if ways else None), chosen)
+        found = pick(front, selectors.Among(conditions=conditions, chooser=ways[0] if ways else None), chosen)
         return Picked(trial=found.trial, design=self.design(found.trial), row=self._row(found.trial), why=found.why)
 
     def design(self, trial: int) -> Design:
@@ -316,23 +304,23 @@ def _ways(
     weights: Sequence[float] | None,
     compromise: Sequence[float] | None,
     nearest: Mapping[str, float] | None,
-) -> list[Chooser]:
+) -> list[selectors.Chooser]:
     """Return the ways to choose that are asked for; more than one, or an unknown one, is a ``SelectionError``."""
-    ways: list[Chooser] = []
+    ways: list[selectors.Chooser] = []
     if by is not None:
         if not isinstance(by, str) or by not in ("knee", "tradeoff"):
             raise SelectionError(complaint("by", by, "'knee' or 'tradeoff'", "correct it, or use another argument"))
-        ways.append(Knee() if by == "knee" else Tradeoff())
+        ways.append(selectors.Knee() if by == "knee" else selectors.Tradeoff())
     if trial is not None:
-        ways.append(Trial(number=trial_of(trial)))
+        ways.append(selectors.Trial(number=trial_of(trial)))
     if weights is not None:
-        ways.append(Weights(values=numbers_of("weights", weights)))
+        ways.append(selectors.Weights(values=numbers_of("weights", weights)))
     if compromise is not None:
-        ways.append(Compromise(values=numbers_of("compromise", compromise)))
+        ways.append(selectors.Compromise(values=numbers_of("compromise", compromise)))
     if nearest is not None:
         if not (wish := _known("nearest", nearest)):
             raise SelectionError("nearest: names no measure; give one, such as {'height_m': 1.0}")
-        ways.append(Nearest(wish=wish))
+        ways.append(selectors.Nearest(wish=wish))
     if len(ways) > 1:
         raise SelectionError(f"ways to choose = {len(ways)}: must be at most 1, with any conditions; drop the others")
     return ways
@@ -343,17 +331,17 @@ def _conditions(
     max_energy_j: float | None,
     at_least: Mapping[str, float] | None,
     at_most: Mapping[str, float] | None,
-) -> tuple[Condition | MaxEnergy, ...]:
-    found: list[Condition | MaxEnergy] = []
+) -> tuple[selectors.Condition | selectors.MaxEnergy, ...]:
+    found: list[selectors.Condition | selectors.MaxEnergy] = []
     if min_height_m is not None:
         least = number_of("min_height_m", min_height_m)
-        found.append(Condition(name="height_m", side="min", value=least, asked="min_height_m"))
+        found.append(selectors.Condition(name="height_m", side="min", value=least, asked="min_height_m"))
     if max_energy_j is not None:
-        found.append(MaxEnergy(energy_j=number_of("max_energy_j", max_energy_j)))
+        found.append(selectors.MaxEnergy(energy_j=number_of("max_energy_j", max_energy_j)))
     for name, value in _known("at_least", {} if at_least is None else at_least).items():
-        found.append(Condition(name=name, side="min", value=value))
+        found.append(selectors.Condition(name=name, side="min", value=value))
     for name, value in _known("at_most", {} if at_most is None else at_most).items():
-        found.append(Condition(name=name, side="max", value=value))
+        found.append(selectors.Condition(name=name, side="max", value=value))
     return tuple(found)
 
 
@@ -361,7 +349,7 @@ def _known(what: str, values: Any) -> dict[str, float]:
     """Return numbers of measures and variables; raise ``InputError``, or ``SelectionError`` for an unknown name."""
     numbers = table_of(what, values)
     for name in numbers:
-        if name not in CONDITION_NAMES and not is_own(name):
-            cure = near_measures(name, CONDITION_NAMES)
+        if name not in selectors.CONDITION_NAMES and not is_own(name):
+            cure = near_measures(name, selectors.CONDITION_NAMES)
             raise SelectionError(f"{what} = {name!r}: must be a measure or a variable; {cure}")
     return numbers

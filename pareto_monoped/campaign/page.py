@@ -221,11 +221,10 @@ def _summary(results: Sequence[Result], sections: Sequence[Section]) -> str:
     else:
         time = f"{seconds / 60.0:.0f} minutes" if seconds < 7200.0 else f"{seconds / 3600.0:.1f} hours"
     words = f"{finished} of {len(results)} studies are finished: {jumps:,} jumps in {time} of running time."
-    several = (
-        " Studies with other objectives or another calibration cannot be compared; they have sections of their own."
-    )
     if len(sections) > 1:
-        words += several
+        words += (
+            " Studies with other objectives or another calibration cannot be compared; they have sections of their own."
+        )
     return words
 
 

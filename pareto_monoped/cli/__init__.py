@@ -14,27 +14,13 @@ import click
 
 from pareto_monoped import __version__
 
+#: Command -> module of this package that defines it, in the order of use.
 _COMMANDS = {
-    "pareto": "pareto",
-    "init": "pareto",
-    "actuators": "actuators",
-    "simulate": "jumps",
-    "table1": "jumps",
-    "run": "studies",
-    "resume": "studies",
-    "status": "studies",
-    "campaign": "campaign",
-    "verify": "stored",
-    "repair": "stored",
-    "trials": "stored",
-    "front": "fronts",
-    "pick": "fronts",
-    "robust": "robustness",
-    "sensitivity": "robustness",
-    "export": "exports",
-    "report": "stored",
-    "dashboard": "stored",
-}  #: Command -> module of this package that defines it, in the order of use.
+    "pareto": "pareto", "init": "pareto", "actuators": "actuators", "simulate": "jumps", "table1": "jumps",
+    "run": "studies", "resume": "studies", "status": "studies", "campaign": "campaign", "verify": "stored",
+    "repair": "stored", "trials": "stored", "front": "fronts", "pick": "fronts", "robust": "robustness",
+    "sensitivity": "robustness", "export": "exports", "report": "stored", "dashboard": "stored",
+}  # fmt: skip
 
 
 class _Commands(click.Group):

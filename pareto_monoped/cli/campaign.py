@@ -105,7 +105,6 @@ def _tell(standings: "Sequence[Standing]", folder: Path, places: "Sequence[Place
 def _write(
     grid: "Campaign", standings: "Sequence[Standing]", page: Path | None, table: Path | None, force: bool
 ) -> None:
-    """Write the outputs that are asked for."""
     from pareto_monoped.files import write_text
 
     if page is None and table is None:
@@ -308,7 +307,6 @@ def clock(seconds: float) -> str:
 
 
 def _all(standings: "Sequence[Standing]", seconds: float) -> str:
-    """Return the campaign in one line."""
     ended = sum(one.state in ("finished", "failed") for one in standings)
     done, budget = (sum(getattr(one, key) for one in standings) for key in ("evaluations", "budget"))
     left = sum(one.budget - one.evaluations for one in standings if one.state != "failed")

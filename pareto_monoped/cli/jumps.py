@@ -12,18 +12,7 @@ from pareto_monoped.cli import options
 from pareto_monoped.cli.options import CSV_FILE, Local, chosen_motors, force_option, motor_options
 from pareto_monoped.cli.terminal import echo, new_console, note
 from pareto_monoped.cli.watching import require_what_shows, view_jump, write_films
-from pareto_monoped.design import (
-    CONTROL,
-    DEFAULT_RULES,
-    NAMES,
-    PAPER_CASES,
-    PAPER_MOTOR,
-    RULE_SETS,
-    VARIABLES,
-    Design,
-    RuleSet,
-    columns,
-)
+from pareto_monoped.design import DEFAULT_RULES, NAMES, PAPER_CASES, PAPER_MOTOR, RULE_SETS, VARIABLES, Design, RuleSet
 from pareto_monoped.errors import DesignError, SimulationError, complaint, unknown_name
 from pareto_monoped.jump.calibration_defaults import DEFAULT
 
@@ -164,7 +153,6 @@ _CURES = {
 
 
 def _design(case: str, changes: tuple[str, ...]) -> Design:
-    """Return the case with its changes."""
     numbers = {}
     for change in changes:
         name, equals, text = change.partition("=")
@@ -231,6 +219,7 @@ def _add_gear_life(report: dict[str, Any], result: "JumpResult", maps: "JointMap
 
 
 def _audit(design: Design, maps: "JointMaps", calibration: "Calibration") -> dict[str, Any]:
+    from pareto_monoped.design import CONTROL, columns
     from pareto_monoped.jump.audit import audit
     from pareto_monoped.jump.balance import energy_balance
     from pareto_monoped.robot.population import robot_arrays

@@ -123,7 +123,6 @@ def told(error: BaseException) -> tuple[str, int]:
 
 
 def _of_click(error: click.ClickException) -> str:
-    """Return its message, in the words of this program."""
     if isinstance(error, click.NoSuchOption):
         # The first is the most similar.
         near = difflib.get_close_matches(error.option_name, error.possibilities or (), n=1)
@@ -150,7 +149,6 @@ def _line(text: str) -> str:
 
 
 def _place(error: BaseException) -> str:
-    """Return where in this package an error came up."""
     package = Path(__file__).parent.parent
     for frame in reversed(traceback.extract_tb(error.__traceback__)):
         path = Path(frame.filename)

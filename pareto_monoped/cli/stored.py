@@ -7,18 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pareto_monoped.cli.options import (
-    CSV_FILE,
-    DATABASE,
-    HTML_FILE,
-    PARQUET_FILE,
-    Local,
-    Where,
-    executor_at,
-    force_option,
-    where,
-    where_options,
-)
+from pareto_monoped.cli import options
 from pareto_monoped.cli.terminal import echo, name, note
 from pareto_monoped.errors import require_extra
 from pareto_monoped.storage.place import StudyPlace
@@ -30,12 +19,12 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("db", type=DATABASE)
+@click.argument("db", type=options.DATABASE)
 @click.option(
     "--simulate", type=click.IntRange(min=0), default=0, metavar="N", help="Simulate N trials again and compare."
 )
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
-@where_options
+@options.where_options
 def verify(db: StudyPlace, simulate: int, workers: int | None, processes: int | None, scheduler: str | None) -> None:
     """Check that nothing in a study has been lost or changed.
 
@@ -47,10 +36,10 @@ def verify(db: StudyPlace, simulate: int, workers: int | None, processes: int | 
     from pareto_monoped.storage.front_reader import foreign_note
     from pareto_monoped.storage.seals import UNSEALED
 
-    place = where(processes, scheduler, workers)
-    if place != Where() and not simulate:
+    place = options.where(processes, scheduler, workers)
+    if place != options.Where() and not simulate:
         raise click.UsageError("--processes and --scheduler go with --simulate only, which is what they do; drop them")
-    with executor_at(place) as executor:
+    with options.executor_at(place) as executor:
         result = verify_study(db, simulate=simulate, workers=workers or cores(), executor=executor)
     for line in result.findings:
         echo(f"found: {line}", err=True)
@@ -64,7 +53,7 @@ def verify(db: StudyPlace, simulate: int, workers: int | None, processes: int | 
 
 
 @click.command()
-@click.argument("db", type=DATABASE)
+@click.argument("db", type=options.DATABASE)
 def repair(db: StudyPlace) -> None:
     """Drop trials that an Optuna user has added to a study.
 
@@ -82,7 +71,7 @@ PORT = 8080  #: Where optuna-dashboard listens by default, too.
 
 
 @click.command()
-@click.argument("db", type=DATABASE)
+@click.argument("db", type=options.DATABASE)
 @click.option(
     "--port", type=click.IntRange(1, 65535), metavar="N", help=f"Where it listens.  [default: {PORT}, or any free one]"
 )
@@ -162,14 +151,19 @@ def _server(application: Any, port: int | None) -> "WSGIServer":
 
 
 @click.command()
-@click.argument("dbs", metavar="DB [DB ...]", nargs=-1, required=True, type=DATABASE)
-@click.option("-o", "--output", type=HTML_FILE, metavar="FILE.html", help="The HTML page.")
+@click.argument("dbs", metavar="DB [DB ...]", nargs=-1, required=True, type=options.DATABASE)
+@click.option("-o", "--output", type=options.HTML_FILE, metavar="FILE.html", help="The HTML page.")
 @click.option(
-    "--figures", type=Local(file_okay=False), metavar="DIR", help="Folder for figures for print, as SVG and PNG."
+    "--figures",
+    type=options.Local(file_okay=False),
+    metavar="DIR",
+    help="Folder for figures for print, as SVG and PNG.",
 )
-@click.option("--exports", type=Local(file_okay=False), metavar="DIR", help="Folder of exported designs, DIR/trial_N.")
+@click.option(
+    "--exports", type=options.Local(file_okay=False), metavar="DIR", help="Folder of exported designs, DIR/trial_N."
+)
 @click.option("--no-jumps", is_flag=True, help="Leave out the jumps of the fronts' designs: quicker, and smaller.")
-@force_option
+@options.force_option
 def report(
     dbs: tuple[StudyPlace, ...],
     output: Path | None,
@@ -203,13 +197,13 @@ def report(
 
 
 @click.command()
-@click.argument("db", type=DATABASE)
-@click.option("--csv", "csv_file", metavar="FILE.csv", type=CSV_FILE, help="Write a table of text.")
-@click.option("--parquet", metavar="FILE.parquet", type=PARQUET_FILE, help="Write a table of Apache Parquet.")
+@click.argument("db", type=options.DATABASE)
+@click.option("--csv", "csv_file", metavar="FILE.csv", type=options.CSV_FILE, help="Write a table of text.")
+@click.option("--parquet", metavar="FILE.parquet", type=options.PARQUET_FILE, help="Write a table of Apache Parquet.")
 @click.option(
     "--state", type=click.Choice(["feasible", "infeasible", "failed"]), help="Only trials that ended like this."
 )
-@force_option
+@options.force_option
 def trials(db: StudyPlace, csv_file: Path | None, parquet: Path | None, state: str | None, force: bool) -> None:
     """Give all trials of a study with every measure, as a table.
 

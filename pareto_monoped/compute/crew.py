@@ -371,6 +371,5 @@ class Crew(Executor):
         self._alone_since_s = None
 
     def _open(self) -> list[Task]:
-        """Return tasks without a result."""
         tasks = [*self._waiting, *(given.task for post in self._posts.values() for given in post.given)]
         return [task for task in dict.fromkeys(tasks) if not task.future.done() and task.function is not self._greeting]

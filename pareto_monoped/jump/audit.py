@@ -146,7 +146,7 @@ def audit(
     """
     values = np.atleast_2d(complete(designs))
     jumps = evaluator_of(actuator_map, calibration, workers, executor=executor)
-    base = known or _of(jumps(values))
+    base = known or jumps(values)
     half = evaluator_of(actuator_map, finer(calibration, 2), workers, executor=executor)(values)
     halved = _changes("half_step", base, half)
     copies = perturbed(values, perturbations, np.random.default_rng(seed))
@@ -177,11 +177,7 @@ ONLY_IN_FULL = ("quarter_step_height_m", "quarter_step_energy", "control_period_
 """Measures of a full audit that no limit is about and that take jumps of their own."""
 
 
-def _of(evaluations: Evaluations) -> Jumps:
-    return Jumps(status=evaluations.status, height_m=evaluations.height_m, energy_j=evaluations.energy_j)
-
-
-def _spread(copies: Floats, base: Jumps, jumps: Evaluator) -> dict[str, Floats]:
+def _spread(copies: Floats, base: Jumps | Evaluations, jumps: Evaluator) -> dict[str, Floats]:
     """Return the changes of height and energy in ``copies`` of each design, shape (n, copies, number of variables)."""
     found = jumps(copies.reshape(-1, copies.shape[-1]))
     height = np.abs(found.height_m.reshape(copies.shape[:2]) - base.height_m[:, None])
@@ -195,7 +191,9 @@ def _spread(copies: Floats, base: Jumps, jumps: Evaluator) -> dict[str, Floats]:
     }
 
 
-def _brief_spread(copies: Floats, base: Jumps, jumps: Evaluator, smooth: NDArray[np.bool_]) -> dict[str, Floats]:
+def _brief_spread(
+    copies: Floats, base: Jumps | Evaluations, jumps: Evaluator, smooth: NDArray[np.bool_]
+) -> dict[str, Floats]:
     """``_spread`` of the first copies where these hardly change and the design is ``smooth``, else of all copies."""
     found = _spread(copies[:, :FIRST_COPIES], base, jumps)
     unclear = np.flatnonzero(~(smooth & _within(CLEAR_SPREAD, found)) & base.ok)
@@ -223,7 +221,6 @@ def _open_balances(values: Floats, jumps: Evaluator) -> Floats:
 
 
 def _balances_of(text: str, values: Floats) -> Floats:
-    """Do the part of a worker."""
     return _balances(built(text), values, task_threads())
 
 

@@ -24,6 +24,7 @@ from pareto_monoped.robot.population import MassOptions
 Share = Annotated[float, Field(gt=0.0, le=1.0)]
 Impedance = Annotated[float, Field(ge=0.0001, le=0.9999)]
 
+_SHIPPED = resources.files("pareto_monoped") / "data" / "calibrations"
 # Hundreds of times the steps of the shipped calibrations; the limit only keeps a typing error from running for days.
 _MOST_STEPS = 1e6
 
@@ -279,15 +280,13 @@ def calibration_values(calibration: Calibration) -> dict[str, Any]:
 
 def calibration_names() -> tuple[str, ...]:
     """Return names of the calibrations shipped with the package, the default first."""
-    folder = resources.files("pareto_monoped") / "data" / "calibrations"
-    names = sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
+    names = sorted(entry.name.removesuffix(".toml") for entry in _SHIPPED.iterdir() if entry.name.endswith(".toml"))
     return (DEFAULT, *(name for name in names if name != DEFAULT))
 
 
 def earlier_calibrations() -> tuple[str, ...]:
     """Return labels of the earlier versions that are shipped for comparison, such as ``reference-1``."""
-    folder = resources.files("pareto_monoped") / "data" / "calibrations" / "earlier"
-    return tuple(sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir()))
+    return tuple(sorted(entry.name.removesuffix(".toml") for entry in (_SHIPPED / "earlier").iterdir()))
 
 
 @cache
@@ -325,11 +324,9 @@ def load_calibration(name_or_path: str = DEFAULT) -> Calibration:
     if _is_path(name_or_path):
         path = Path(name_or_path)
     elif name := name_or_path if name_or_path in calibration_names() else _present_labels().get(name_or_path):
-        path = Path(str(resources.files("pareto_monoped") / "data" / "calibrations" / f"{name}.toml"))
+        path = Path(str(_SHIPPED / f"{name}.toml"))
     else:
-        path = Path(
-            str(resources.files("pareto_monoped") / "data" / "calibrations" / "earlier" / f"{name_or_path}.toml")
-        )
+        path = Path(str(_SHIPPED / "earlier" / f"{name_or_path}.toml"))
     values: dict[str, Any] = read_toml(path, what="calibration file", error=CalibrationError)
     return calibration_of(values, source=f"calibration file {path.name!r}")
 

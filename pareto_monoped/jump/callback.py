@@ -11,6 +11,7 @@ import threading
 import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -26,33 +27,66 @@ from pareto_monoped.jump import controller
 from pareto_monoped.jump.controller import control
 from pareto_monoped.jump.controller_record import RECORD, RECORD_NUMBERS
 
-_lock = threading.Lock()
-_users = 0
-_quiet_before = (True, True)
+
+@dataclass(slots=True)
+class _Setting:
+    """A setting of the process that its first user makes and its last one takes back, on whatever threads."""
+
+    make: Callable[[], Any]  #: returns what was set before
+    restore: Callable[[Any], object]
+    lock: threading.Lock = field(default_factory=threading.Lock)
+    users: int = 0
+    before: Any = None
+
+    @contextmanager
+    def used(self) -> Iterator[None]:
+        with self.lock:
+            if self.users == 0:
+                self.before = self.make()
+            self.users += 1
+        try:
+            yield
+        finally:
+            with self.lock:
+                self.users -= 1
+                if self.users == 0:
+                    self.restore(self.before)
+
+
+def _set_log(wanted: tuple[bool, bool] = (False, False)) -> tuple[bool, bool]:
+    """Let MuJoCo write to standard output and to its file, or not, and return whether it did before."""
+    config = mujoco.MjLogConfig.get()
+    before = (config.logto_console, config.logto_file)
+    config.logto_console, config.logto_file = wanted
+    config.set()
+    return before
+
+
+def _install() -> Any:
+    before = mujoco.get_mjcb_control()
+    mujoco.set_mjcb_control(_compiled())
+    return before
+
+
+_LOG, _CALLBACK = _Setting(_set_log, _set_log), _Setting(_install, mujoco.set_mjcb_control)
 
 
 @contextmanager
 def quiet() -> Iterator[None]:
     """Let MuJoCo write neither to ``MUJOCO_LOG.TXT`` nor to standard output; the last user restores the settings."""
-    global _users, _quiet_before
-    import mujoco
-
-    with _lock:
-        if _users == 0:
-            config = mujoco.MjLogConfig.get()
-            _quiet_before = (config.logto_console, config.logto_file)
-            config.logto_console = config.logto_file = False
-            config.set()
-        _users += 1
-    try:
+    with _LOG.used():
         yield
-    finally:
-        with _lock:
-            _users -= 1
-            if _users == 0:
-                config = mujoco.MjLogConfig.get()
-                config.logto_console, config.logto_file = _quiet_before
-                config.set()
+
+
+@contextmanager
+def controlled() -> Iterator[None]:
+    """Let the controller act in every simulation whose user data is a controller's record, and in no other.
+
+    A process has only one callback; the last user restores the earlier one. If MuJoCo's library is not where its
+    package has it, this raises ``SimulationError``.
+    """
+    with _CALLBACK.used(), quiet():
+        yield
 
 
 _POSITION = types.CPointer(types.float64)
@@ -68,36 +102,9 @@ _WRITTEN = int(mujoco.mjtState.mjSTATE_CTRL) | _USER
 _READ = _POSITIONS | int(mujoco.mjtState.mjSTATE_QVEL) | _WRITTEN
 _JOINTS = 2
 
-_before: Callable[..., object] | None = None
-
-
-@contextmanager
-def controlled() -> Iterator[None]:
-    """Let the controller act in every simulation whose user data is a controller's record, and in no other.
-
-    A process has only one callback; the last user restores the earlier one. If MuJoCo's library is not where its
-    package has it, this raises ``SimulationError``.
-    """
-    global _users, _before
-    callback = _compiled()
-    with _lock:
-        if _users == 0:
-            _before = mujoco.get_mjcb_control()
-            mujoco.set_mjcb_control(callback)
-        _users += 1
-    try:
-        with quiet():
-            yield
-    finally:
-        with _lock:
-            _users -= 1
-            if _users == 0:
-                mujoco.set_mjcb_control(_before)
-
 
 @lru_cache(maxsize=1)
 def _compiled() -> Any:
-    """Return the callback as a C function."""
     library = ctypes.CDLL(str(_library()))
     for name in ("mj_getState", "mj_setState", "mj_stateSize"):
         llvmlite.binding.add_symbol(name, ctypes.cast(getattr(library, name), ctypes.c_void_p).value)
@@ -110,7 +117,6 @@ def _origin(source: Path) -> int:
 
 
 def _library() -> Path:
-    """Return the shared library that MuJoCo's package loads."""
     folder = Path(mujoco.__file__).parent
     for pattern in ("libmujoco.so*", "libmujoco*.dylib", "mujoco.dll"):
         for path in sorted(folder.glob(pattern)):

@@ -143,7 +143,6 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
 
 @compiled
 def _direction(angle: float) -> tuple[float, float]:
-    """Return sine and cosine."""
     return math.sin(angle), math.cos(angle)
 
 

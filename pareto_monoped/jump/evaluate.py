@@ -208,6 +208,7 @@ def _collect(
     mass = table.columns["mass_kg"][rows]
     rise = records["height_m"] - robots.start_height_m
     active = np.maximum(records["active_steps"], 1.0)
+    travels_rad = np.array([getattr(robots.stops, joint).travel_rad for joint in JOINTS])  # of whole bumpers
     saturated = records["saturated_steps"] / active[:, None]
     measures = _as_recorded(records) | {
         "energy_j": energy,
@@ -221,16 +222,11 @@ def _collect(
         "electrical_energy_j": records["electrical_energy_j"] + drive.standby_power_w * (records["steps"] - 1) * step,
         "sustained_jumps_per_minute": _sustained_per_minute(records, robots.continuous_torque_n_m),
         "peak_stop_torque_n_m": records["peak_stop_torque_n_m"].max(axis=1),
-        **_by_joint("stop_compression_{}", records["peak_beyond_stop_rad"] / _travels_rad(robots)),
+        **_by_joint("stop_compression_{}", records["peak_beyond_stop_rad"] / travels_rad),
         "agility_m_per_s": rise / np.where(ok, (records["steps"] - 1) * step, np.nan),
     }
     for name, values in measures.items():
         table.columns[name][rows[ok]] = values[ok]
-
-
-def _travels_rad(robots: RobotArrays) -> Floats:
-    """Return angles beyond the ranges of hip and knee at which their bumpers are fully compressed."""
-    return np.array([getattr(robots.stops, joint).travel_rad for joint in JOINTS])
 
 
 def _sustained_per_minute(records: Records, continuous_torque_n_m: Floats) -> Floats:

@@ -151,7 +151,6 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
     records = np.zeros(len(robots), dtype=RECORD)
     records["status"] = controller.RUNNING
     records["height_m"] = robots.start_height_m
-
     records["timestep_s"] = simulation.timestep_s
     records["read_back_s"] = 0.5 * simulation.timestep_s if simulation.positions_read == "half_step_back" else 0.0
     records["period_steps"] = simulation.period_steps
@@ -163,14 +162,12 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
         records["latch"] = gate.latch
     else:
         records["lags"] = gate.lags
-    records["loss_speed_rad_per_s"] = drive.loss_speed_rad_per_s
-    records["regeneration_share"] = drive.regeneration_share
+    for name in ("loss_speed_rad_per_s", "regeneration_share", "voltage_limit"):
+        records[name] = getattr(drive, name)
     records["mean_speed"] = simulation.work_speed == "mean"
-    records["voltage_limit"] = drive.voltage_limit
 
-    records["thigh_length_m"] = robots.thigh_length_m
-    records["shank_length_m"] = robots.shank_length_m
-    records["foot_radius_m"] = robots.foot_radius_m
+    for name in ("thigh_length_m", "shank_length_m", "foot_radius_m", "no_load_speed_rad_per_s"):
+        records[name] = getattr(robots, name)
     given = dict(zip(CONTROL, complete_control(control).T, strict=True))
     for name in (*PAPER_CONTROL, "knee_release_rad"):
         records[name] = given[name]
@@ -187,7 +184,6 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
         records["start_rad"] = np.stack([pose.hip_rad, pose.knee_rad], axis=1)
     limit = model.torque_limit(robots, drive)
     records["torque_limit_n_m"] = limit
-    records["no_load_speed_rad_per_s"] = robots.no_load_speed_rad_per_s
     # The voltage-speed line R i + k_t w = k_t w_0 meets the peak current at the corner speed.
     volts_per_speed = robots.ratio * robots.torque_constant_n_m_per_a
     current = limit / volts_per_speed

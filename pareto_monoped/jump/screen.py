@@ -106,6 +106,5 @@ def screened(
 
 
 def _screened_of(text: str, designs: Floats, known: Jumps, seed: int) -> Screened:
-    """Do the part of a worker."""
     (maps,), calibration = built(text)
     return screened(designs, maps, calibration, known, workers=task_threads(), seed=seed)

@@ -14,7 +14,7 @@ from pareto_monoped.actuator.ratiomap import Maps
 from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, Design, Floats, columns
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.callback import quiet
-from pareto_monoped.jump.evaluate import Evaluations, Evaluator
+from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
@@ -51,20 +51,13 @@ def simulate(design: Design, maps: Maps, calibration: Calibration, *, trace: boo
     if trace and evaluations.status[0] not in ("bad_input", "no_gearbox", "cannot_stand"):
         robots = robot_arrays(values, maps, calibration.mass)
         rows = trace_of(robots, columns(values, CONTROL), calibration)
-    return result_of(design, calibration, evaluations, rows)
-
-
-def result_of(
-    design: Design, calibration: Calibration, evaluations: Evaluations, trace: dict[str, Floats]
-) -> JumpResult:
-    """Return the first row of ``evaluations`` as a single result."""
     return JumpResult(
         design=design,
         calibration=calibration.label,
         status=str(evaluations.status[0]),
         reason=evaluations.reason[0],
         measures={name: float(getattr(evaluations, name)[0]) for name in MEASURE_NAMES},
-        trace=trace,
+        trace=rows,
     )
 
 
@@ -139,41 +132,23 @@ def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
         data, q, v = moment.data, moment.qpos, moment.qvel
         slides = len(q) == 4
         foot = data.site_xpos[0]
-        force = contact_force(data)
+        force = constraint_forces(data)[2]
         matrix = np.zeros((len(v), len(v)))
         mujoco.mj_fullM(moment.model, data, matrix)
         torques = (0.0,) * 4 if moment.last else (*moment.record["motor_torque_n_m"], *data.ctrl)
-        rows.append(
-            (
-                index * calibration.simulation.timestep_s,
-                q[0] if slides else 0.0,
-                q[-3],
-                v[0] if slides else 0.0,
-                v[-3],
-                foot[0],
-                foot[2],
-                foot[2] - radius,
-                q[-2],
-                q[-1],
-                v[-2],
-                v[-1],
-                *torques,
-                force[0] if slides else float("nan"),
-                force[-3],
-                0.5 * v @ matrix @ v,
-                weight_n * float(data.subtree_com[0, 2]),
-            )
-        )
+        base = (q[0] if slides else 0.0, q[-3], v[0] if slides else 0.0, v[-3])
+        legs = (foot[0], foot[2], foot[2] - radius, q[-2], q[-1], v[-2], v[-1])
+        floor = (force[0] if slides else float("nan"), force[-3])
+        energies = (0.5 * v @ matrix @ v, weight_n * float(data.subtree_com[0, 2]))
+        rows.append((index * calibration.simulation.timestep_s, *base, *legs, *torques, *floor, *energies))
     return dict(zip(TRACE_COLUMNS, np.array(rows).T, strict=True))
 
 
-def contact_force(data: Any) -> Floats:
-    """The generalised force of all contacts, shape (nv,); its slide entries are the floor's force on the foot."""
-    return constraint_forces(data)[2]
-
-
 def constraint_forces(data: Any) -> tuple[Floats, Floats, Floats]:
-    """Return the generalised forces of joint friction, end stops and contacts, each of shape (nv,)."""
+    """Return the generalised forces of joint friction, end stops and contacts, each of shape (nv,).
+
+    The slide entries of the contacts' are the floor's force on the foot.
+    """
     import mujoco
 
     kinds, kind = mujoco.mjtConstraint, data.efc_type
