@@ -4,12 +4,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import Field
 
 from pareto_monoped.config import Positive, Strict, checked, read_shipped
 
+T = TypeVar("T")
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
 
@@ -134,18 +135,13 @@ def _shipped() -> Materials:
     return checked(Materials, named, source="materials")
 
 
-def _shipped_grades() -> Mapping[str, GearGrade]:
-    tables = _file()[_GRADES]
-    grades = {key: checked(GearGrade, table, source=f"materials: {_GRADES}.{key}") for key, table in tables.items()}
-    return MappingProxyType(grades)
-
-
-def _shipped_alloys() -> Mapping[str, Alloy]:
-    tables = _file()[_ALLOYS]
-    alloys = {key: checked(Alloy, table, source=f"materials: {_ALLOYS}.{key}") for key, table in tables.items()}
-    return MappingProxyType(alloys)
+def _shipped_tables(kind: type[T], name: str) -> Mapping[str, T]:
+    tables = _file()[name].items()
+    return MappingProxyType({key: checked(kind, table, source=f"materials: {name}.{key}") for key, table in tables})
 
 
 MATERIALS = _shipped()  #: The materials that ship with the package.
-ALLOYS = _shipped_alloys()  #: The alloys that ship with the package, by the names that the parts use.
-GEAR_GRADES = _shipped_grades()  #: The steel grades that ship with the package, by the names that the settings use.
+ALLOYS = _shipped_tables(Alloy, _ALLOYS)  #: The alloys that ship with the package, by the names that the parts use.
+GEAR_GRADES = _shipped_tables(
+    GearGrade, _GRADES
+)  #: The steel grades that ship with the package, by the names that the settings use.

@@ -1,7 +1,4 @@
-"""Run, resume and make robust: studies that grow, from scripts.
-
-How stored designs jump as robots are built, from scripts.
-"""
+"""Run and resume studies from scripts, and let stored designs jump as robots are built."""
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence

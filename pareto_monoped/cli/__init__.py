@@ -91,9 +91,7 @@ def cli(ctx: click.Context) -> None:
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line and exit with its code: 0, 1 (failure), 2 (bad input) or 130 (interrupt).
 
-    Args:
-        arguments: the words of the command; None for those of this process, which then belongs to the command: the
-            signals that end it and its standard streams are taken care of.
+    Without ``arguments``, the process belongs to the command: its signals and standard streams are taken care of.
     """
     if arguments is not None:
         sys.exit(_run(arguments))

@@ -172,7 +172,6 @@ def _table(*columns: tuple[str, Literal["left", "right"]], no_wrap: str) -> "Tab
 
 
 def _print_map(actuator_map: "ActuatorMap") -> None:
-
     from pareto_monoped.actuator.explain import gaps, motor_facts
     from pareto_monoped.actuator.ratiomap import either
 
@@ -245,7 +244,6 @@ def _last_cells(actuator: "Actuator") -> tuple[str, ...]:
 
 
 def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "ServiceSheet") -> None:
-
     from pareto_monoped.actuator.assumptions import default_service
     from pareto_monoped.actuator.explain import details
     from pareto_monoped.cli.actuator_sheets import (

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from pareto_monoped.jump.table1 import Row
 
 _OUTPUT = Local(dir_okay=False)
-
-
 _VARIABLES = "\n".join(
     ["\b", "Design variables of --set, with their units and usual bounds:"]
     + [

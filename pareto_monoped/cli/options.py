@@ -14,7 +14,7 @@ import click
 
 from pareto_monoped.cli.terminal import echo
 from pareto_monoped.design import PAPER_MOTOR
-from pareto_monoped.errors import DatabaseError, InputError, complaint
+from pareto_monoped.errors import DatabaseError, InputError, ParetoMonopedError, complaint
 from pareto_monoped.storage.address import is_address
 from pareto_monoped.storage.place import place_of
 
@@ -165,9 +165,7 @@ def trials(ctx: "click.Context", _: "click.Parameter", incomplete: str) -> "list
     """Return numbers of the trials on the front of the study that the line names, with their objectives as help."""
     from click.shell_completion import CompletionItem
 
-    from pareto_monoped.errors import ParetoMonopedError
     from pareto_monoped.storage.kept_front import front_trials
-    from pareto_monoped.storage.place import place_of
 
     # An option without its value ends click's reading of a line, before arguments get their names.
     db = ctx.params.get("db") or next(iter(ctx.args), None)

@@ -1,7 +1,4 @@
-"""``robust``: designs of a study under uncertainty.
-
-``sensitivity``: which variable and which assumption moves a design's measures most.
-"""
+"""Commands on uncertainty: ``robust`` for designs of a study, and ``sensitivity`` for what moves a design most."""
 
 import json
 from collections.abc import Mapping, Sequence

@@ -82,7 +82,6 @@ def dashboard(db: StudyPlace, port: int | None, browse: bool) -> None:
     It listens on this machine only. The study is opened for reading, also while it runs: notes, new names and deletions
     are refused there.
     """
-    from pareto_monoped.errors import require_extra
     from pareto_monoped.storage.status import read_summary
 
     require_extra("dashboard", "dashboard")
