@@ -38,38 +38,11 @@ if TYPE_CHECKING:
     from pareto_monoped.study.pymoo_problem import MonopedProblem
 
 __all__ = [
-    "MEASURES",
-    "PAPER_CASES",
-    "VARIABLES",
-    "Calibration",
-    "Design",
-    "MonopedProblem",
-    "Motor",
-    "OptunaObjective",
-    "ParetoMonopedError",
-    "Picked",
-    "Scores",
-    "Space",
-    "StoredStudy",
-    "Study",
-    "__version__",
-    "actuator_map",
-    "build_robot",
-    "export",
-    "export_trial",
-    "load_calibration",
-    "load_motor",
-    "load_study",
-    "plot_actuators",
-    "plot_front",
-    "plot_jump",
-    "resume",
-    "robust",
-    "run",
-    "simulate",
-    "trace",
-    "write_report",
-]
+    "MEASURES", "PAPER_CASES", "VARIABLES", "Calibration", "Design", "MonopedProblem", "Motor", "OptunaObjective",
+    "ParetoMonopedError", "Picked", "Scores", "Space", "StoredStudy", "Study", "__version__", "actuator_map",
+    "build_robot", "export", "export_trial", "load_calibration", "load_motor", "load_study", "plot_actuators",
+    "plot_front", "plot_jump", "resume", "robust", "run", "simulate", "trace", "write_report",
+]  # fmt: skip
 
 _HOMES = {
     "actuator.motor": ("Motor",),
@@ -86,15 +59,14 @@ _HOMES = {
     "study.outside": ("OptunaObjective",),
     "search.algorithm": ("Scores", "Space"),
     "study.pymoo_problem": ("MonopedProblem",),
-}
-"""Module -> the public names that it defines."""
+}  #: Module -> the public names that it defines.
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 
 
 if not TYPE_CHECKING:  # to a type checker every misspelt name would be there
 
     def __getattr__(name: str) -> Any:
-        """A public name, imported now that it is used (PEP 562)."""
+        """Return a public name, imported now that it is used (PEP 562)."""
         if name not in _HOME:
             raise AttributeError(f"module 'pareto_monoped' has no attribute {name!r}")
         from importlib import import_module
@@ -105,5 +77,5 @@ if not TYPE_CHECKING:  # to a type checker every misspelt name would be there
 
 
 def __dir__() -> list[str]:
-    """The public names."""
+    """Return the public names."""
     return sorted(__all__)

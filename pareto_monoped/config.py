@@ -1,7 +1,4 @@
-"""Read TOML files into checked, frozen dataclasses; a wrong field becomes an error of one line. JSON is read, too.
-
-What is read may come from a stranger: TOML and JSON have limits of size and depth.
-"""
+"""Read TOML files into checked, frozen dataclasses, and JSON within limits: either may come from a stranger."""
 
 import difflib
 import json
@@ -24,12 +21,9 @@ T = TypeVar("T")
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 
-MAX_TOML_BYTES = 1_000_000
-"""Our own choice: a hundred times our longest file."""
-MAX_JSON_CHARACTERS = 64_000_000
-"""Our own choice: the kept front of a study of 200,000 trials, all of them on it, has 1.4 million."""
-MAX_JSON_DEPTH = 64
-"""Levels of lists and objects in each other. Our own choice: ours have less than ten."""
+MAX_TOML_BYTES = 1_000_000  #: Our own choice: a hundred times our longest file.
+MAX_JSON_CHARACTERS = 64_000_000  #: Our own choice: the kept front of a study of 200,000 trials has 1.4 million.
+MAX_JSON_DEPTH = 64  #: Levels of lists and objects in each other. Our own choice: ours have less than ten.
 _TEXTS = re.compile(r'"(?:[^"\\]|\\.)*"')
 _NO_BRACKETS = re.compile(r"[^\[\]{}]+")
 _INNERMOST = re.compile(r"\[\]|\{\}")
@@ -44,12 +38,7 @@ class Strict:
 
 
 def read_toml(path: Path, *, what: str, error: type[InputError] = InputError) -> dict[str, Any]:
-    """The tables of a TOML file.
-
-    Args:
-        path: the file.
-        what: what the file should be, for the error message, such as ``"motor file"``.
-        error: the kind of ``InputError`` to raise.
+    """Return the tables of a TOML file; ``what`` begins error messages, such as ``"motor file"``.
 
     Raises:
         InputError: (or ``error``) the file is missing or unreadable, or is not valid TOML.
@@ -85,7 +74,7 @@ def read_toml(path: Path, *, what: str, error: type[InputError] = InputError) ->
 
 
 def parsed_json(text: Any) -> Any:
-    """The value of a JSON text of limited size and depth.
+    """Return the value of a JSON text.
 
     Raises:
         ValueError: no text, no JSON, or beyond ``MAX_JSON_CHARACTERS`` or ``MAX_JSON_DEPTH``.
@@ -105,7 +94,7 @@ def parsed_json(text: Any) -> Any:
 
 
 def read_json(path: Path) -> Any:
-    """The value of a JSON file of limited size and depth.
+    """Return the value of a JSON file of limited size and depth.
 
     Raises:
         OSError: it cannot be read.
@@ -116,7 +105,7 @@ def read_json(path: Path) -> Any:
 
 
 def _depth_exceeds(text: str, levels: int) -> bool:
-    """Whether valid JSON is nested more deeply than that many levels."""
+    """Return whether valid JSON is nested more deeply than that many levels."""
     brackets = _NO_BRACKETS.sub("", _TEXTS.sub("", text))
     for _ in range(levels):
         if not brackets:
@@ -126,7 +115,7 @@ def _depth_exceeds(text: str, levels: int) -> bool:
 
 
 def read_shipped(name: str, *, what: str, error: type[InputError] = InputError) -> dict[str, Any]:
-    """The tables of a TOML file in the package's ``data`` folder, with arguments as for ``read_toml``."""
+    """Return the tables of a TOML file in the package's ``data`` folder, with arguments as for ``read_toml``."""
     with resources.as_file(resources.files("pareto_monoped") / "data" / name) as path:
         return read_toml(path, what=what, error=error)
 
@@ -134,18 +123,13 @@ def read_shipped(name: str, *, what: str, error: type[InputError] = InputError) 
 def checked(kind: type[T], values: Mapping[str, Any], *, source: str, error: type[InputError] = InputError) -> T:
     """Make an instance of dataclass ``kind`` from plain values; every field is checked against its annotation.
 
-    Bounds stand in the annotations (``Annotated[float, Field(gt=0)]``). Unknown keys are refused if the dataclass
-    has ``__pydantic_config__ = ConfigDict(extra="forbid")``.
-
-    Args:
-        kind: the dataclass.
-        values: the fields by name, nested for nested dataclasses.
-        source: where the values come from; begins the error message, such as ``"motor file 'my.toml'"``.
-        error: the kind of ``InputError`` to raise.
+    Bounds stand in the annotations (``Positive``). Values of nested dataclasses are nested, and a dataclass that
+    inherits from ``Strict`` refuses unknown keys. ``source`` begins the error message, such as ``"motor file
+    'my.toml'"``.
 
     Raises:
-        InputError: (or ``error``) a field is wrong; the message names the first one, its value, what is allowed and
-            the cure.
+        InputError: (or ``error``) a field is wrong; the message names the first one, its value, what is allowed and the
+            cure.
     """
     try:
         return TypeAdapter(kind).validate_python(dict(values))
@@ -153,12 +137,11 @@ def checked(kind: type[T], values: Mapping[str, Any], *, source: str, error: typ
         raise error(f"{source}: {_line(kind, problem)}") from None
 
 
-_UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
-"""What pydantic calls an unknown key."""
+_UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")  #: What pydantic calls an unknown key.
 
 
 def _line(kind: type, problem: ValidationError) -> str:
-    """The first error in one line. Pydantic lists them in the order of the fields, and unknown keys behind them."""
+    """Return the first error in one line; pydantic lists errors by field, unknown keys last."""
     errors = problem.errors(include_url=False)
     first = errors[0]
     if first["type"] == "missing":  # an unknown key may be the missing one, misspelt
@@ -195,8 +178,7 @@ _ALLOWED = {
     "string_too_long": "text of at most {max_length} letters",
     "too_short": "a list of at least {min_length} values",
     "too_long": "a list of at most {max_length} values",
-}
-"""Kind of an error of pydantic -> what is allowed; in braces what pydantic knows of it."""
+}  #: Kind of an error of pydantic -> what is allowed; in braces what pydantic knows of it.
 _KINDS = {
     "int": "a whole number",
     "float": "a number",
@@ -207,12 +189,11 @@ _KINDS = {
     "model": "a table",
     "list": "a list",
     "tuple": "a list",
-}
-"""First word of such a kind -> what is allowed."""
+}  #: First word of such a kind -> what is allowed.
 
 
 def _allowed(problem: "ErrorDetails") -> str:
-    """What is allowed in place of a wrong value, in our words."""
+    """Return what is allowed in place of a wrong value, in our words."""
     kind = problem["type"]
     if kind in _ALLOWED:
         known = problem.get("ctx", {})

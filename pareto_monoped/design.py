@@ -29,6 +29,7 @@ from numpy.typing import ArrayLike, NDArray
 from pareto_monoped.errors import DesignError, complaint, unknown_name
 
 _T = TypeVar("_T")
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,10 +52,8 @@ class Variable:
     factor: str = field(repr=False)  #: what a sensitivity calls it among what moves a design
 
 
-BASE_START_HEIGHT_M = 0.5
-"""Height of the base above the floor at rest (paper, section IV-B)."""
-REST_LENGTH_M = 10.0
-"""l0, rest length of the virtual spring, in a passage that the paper's final text lost."""
+BASE_START_HEIGHT_M = 0.5  #: Height of the base above the floor at rest (paper, section IV-B).
+REST_LENGTH_M = 10.0  #: l0, rest length of the virtual spring, in a passage that the paper's final text lost.
 
 
 def _variable(
@@ -115,7 +114,7 @@ VARIABLES: tuple[Variable, ...] = (
 # fmt: on
 """The records of all design variables, the paper's seven first; each has name, unit, bounds, meaning and default."""
 NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES)
-"""The names of all variables; the order of the columns of every array of designs."""
+"""In the order of the columns of arrays of designs."""
 PAPER_NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES if variable.default is None)
 """The names of the paper's seven, which come first."""
 DEFAULTS: dict[str, float] = {v.name: v.default for v in VARIABLES if v.default is not None}
@@ -124,31 +123,23 @@ LENGTHS = ("thigh_length_m", "shank_length_m")
 RATIOS = ("knee_ratio", "hip_ratio")
 PAPER_CONTROL = ("stiffness_n_per_m", "damping_n_s_per_m", "torsional_stiffness_n_m_per_rad")
 """K, C and T of the virtual controller."""
-CONTROL = (*PAPER_CONTROL, *DEFAULTS)
-"""Everything that a jump needs besides the robot."""
-LOWER: NDArray[np.float64] = np.array([variable.lower for variable in VARIABLES if variable.default is None])
-UPPER: NDArray[np.float64] = np.array([variable.upper for variable in VARIABLES if variable.default is None])
+CONTROL = (*PAPER_CONTROL, *DEFAULTS)  #: Everything that a jump needs besides the robot.
+LOWER: Floats = np.array([variable.lower for variable in VARIABLES if variable.default is None])
+UPPER: Floats = np.array([variable.upper for variable in VARIABLES if variable.default is None])
 """The paper's bounds of its seven variables, shape (7,)."""
 LOWER.flags.writeable = False
 UPPER.flags.writeable = False
 
-_SHORTEST_M = 0.05
-"""Of a link, or of a start above the floor. A shorter link has no room for the actuators' output couplings."""
-LEAST: NDArray[np.float64] = np.array(
+_SHORTEST_M = 0.05  #: Of a link or start; a shorter link has no room for the actuators' output couplings.
+LEAST: Floats = np.array(
     [_SHORTEST_M if name in (*LENGTHS, "start_height_m") else 1.0 if name in RATIOS else 0.0 for name in NAMES]
-)
-"""The least value of each variable that a design can mean; a ratio of 1 is no gearbox. Shape (number of variables,)."""
+)  #: The least value of each variable that a design can mean; a ratio of 1 is no gearbox. Shape (number of variables,).
 LEAST.flags.writeable = False
-MOST = 1e9
-"""Beyond this value of any variable, numbers overflow."""
+MOST = 1e9  #: Beyond this value of any variable, numbers overflow.
 
 
 def in_use(values: Mapping[str, ArrayLike]) -> tuple[Variable, ...]:
-    """The paper's seven variables, and the optional ones of which some value differs from the default.
-
-    Args:
-        values: name -> values, such as a data frame of trials; an absent optional variable is not in use.
-    """
+    """Return the paper's seven variables and the optional ones that differ from their defaults anywhere in a table."""
     return tuple(
         variable
         for variable in VARIABLES
@@ -157,14 +148,10 @@ def in_use(values: Mapping[str, ArrayLike]) -> tuple[Variable, ...]:
     )
 
 
-def complete(designs: ArrayLike) -> NDArray[np.float64]:
-    """Designs with a column for each variable.
+def complete(designs: ArrayLike) -> Floats:
+    """Return designs with a column for each variable, of which optional ones may have been left out at their defaults.
 
-    Args:
-        designs: shape (..., 7), the paper's variables, or (..., number of variables); in the order of ``NAMES``.
-
-    Returns:
-        Shape (..., number of variables): optional variables that were left out at their defaults.
+    ``designs`` has shape (..., 7), the paper's variables, or (..., number of variables), in the order of ``NAMES``.
 
     Raises:
         DesignError: another number of values.
@@ -182,28 +169,20 @@ def complete(designs: ArrayLike) -> NDArray[np.float64]:
     return np.concatenate([values, optional], axis=-1)
 
 
-def complete_control(control: ArrayLike) -> NDArray[np.float64]:
-    """Values in the order of ``CONTROL``, shape (n, 6), from K, C and T, shape (n, 3), or from all of them."""
+def complete_control(control: ArrayLike) -> Floats:
+    """Return values in the order of ``CONTROL``, shape (n, 6), from K, C and T, shape (n, 3), or from all of them."""
     values = np.atleast_2d(np.asarray(control, dtype=np.float64))
     missing = [DEFAULTS[name] for name in CONTROL[values.shape[1] :]]
     return np.concatenate([values, np.broadcast_to(missing, (len(values), len(missing)))], axis=1)
 
 
-def columns(designs: ArrayLike, names: Sequence[str]) -> NDArray[np.float64]:
-    """The values of some variables.
-
-    Args:
-        designs: see ``complete``.
-        names: which variables, such as ``CONTROL``.
-
-    Returns:
-        A C-ordered copy, shape (..., len(names)), in the order of ``names``.
-    """
+def columns(designs: ArrayLike, names: Sequence[str]) -> Floats:
+    """Return a C-ordered copy of some variables' values, such as ``CONTROL``; for ``designs`` see ``complete``."""
     return np.take(complete(designs), [NAMES.index(name) for name in names], axis=-1)
 
 
 def nonsense(name: str, value: float) -> str | None:
-    """What is wrong with a value that no design can mean; the paper's bounds play no part. None if it is one."""
+    """Return what is wrong with a value that no design can mean; the paper's bounds play no part. None if it is one."""
     if not np.isfinite(value):
         return complaint(name, float(value), "a finite number", "give a number")
     least = LEAST[NAMES.index(name)]
@@ -213,11 +192,7 @@ def nonsense(name: str, value: float) -> str | None:
 
 
 def _number(name: str, given: object) -> float:
-    """A value that a design can mean.
-
-    Raises:
-        DesignError: no number, or nonsense.
-    """
+    """Return a value that a design can mean, or raise ``DesignError``."""
     if isinstance(given, bool) or not isinstance(given, Real):
         raise DesignError(complaint(name, given, "a finite number", "give a number"))
     try:
@@ -230,7 +205,7 @@ def _number(name: str, given: object) -> float:
 
 
 def _checked(kind: type[_T]) -> type[_T]:
-    """The class, with errors of ours for names that are unknown or missing, and for values that cannot be meant."""
+    """Wrap the class so that unknown or missing names and values that nobody can mean are our own errors."""
     made = kind.__init__
 
     @wraps(made)
@@ -272,18 +247,18 @@ class Design:
     rest_length_m: float = REST_LENGTH_M
     start_height_m: float = BASE_START_HEIGHT_M
 
-    def as_array(self) -> NDArray[np.float64]:
-        """The values in the order of ``NAMES``, shape (number of variables,)."""
+    def as_array(self) -> Floats:
+        """Return the values in the order of ``NAMES``, shape (number of variables,)."""
         return np.array([getattr(self, name) for name in NAMES], dtype=np.float64)
 
     def as_dict(self) -> dict[str, float]:
-        """The values by name: the paper's seven, and the optional ones that differ from their defaults."""
+        """Return the values by name: the paper's seven, and the optional ones that differ from their defaults."""
         values = {name: getattr(self, name) for name in NAMES}
         return {name: value for name, value in values.items() if value != DEFAULTS.get(name)}
 
     @classmethod
     def from_array(cls, values: ArrayLike) -> "Design":
-        """A design from its values in the order of ``NAMES``.
+        """Return a design from its values in the order of ``NAMES``.
 
         Raises:
             DesignError: a wrong number of values, or a value that no design can mean.
@@ -298,7 +273,7 @@ class Design:
         return cls(**dict(zip(NAMES, complete(array).tolist(), strict=True)))
 
     def replace(self, changes: Mapping[str, float]) -> "Design":
-        """A copy with some variables changed.
+        """Return a copy with some variables changed.
 
         Raises:
             DesignError: an unknown name, or a value that no design can mean.
@@ -352,17 +327,13 @@ PAPER_CASES: Mapping[str, PaperCase] = _Cases(
 )
 """The rows of the paper's Table I by name: ``nominal``, ``A``, ``B`` and ``C``; each has its ``design``, and the height
 and energy that the authors report."""
-PAPER_MOTOR = "VT8020"
-"""The motor of all rows of Table I; the default wherever a motor may be named."""
+PAPER_MOTOR = "VT8020"  #: The motor of all rows of Table I; the default wherever a motor may be named.
 RuleSet = Literal["paper", "iso6336"]
-"""Names of the sets of rules that gearboxes are chosen by: see ``actuator.settings.ActuatorSettings``."""
+"""Rules that gearboxes are chosen by, see ``actuator.settings.ActuatorSettings``."""
 RULE_SETS: tuple[RuleSet, ...] = get_args(RuleSet)
-DEFAULT_RULES: RuleSet = "iso6336"
-"""The rules of every command and study file that names none. What is stored without rules was made with ``paper``."""
-HEADLINE_HEIGHT_M = PAPER_CASES["C"].height_m
-"""Height at which the least energy of a front is quoted, 0.8 m: that of the paper's best design, Case C."""
-GRAVITY_M_PER_S2 = 9.81
-"""The default of MuJoCo, also used for the paper's m g."""
+DEFAULT_RULES: RuleSet = "iso6336"  #: Where none are named. Studies stored without rules were made with ``paper``.
+HEADLINE_HEIGHT_M = PAPER_CASES["C"].height_m  #: Height at which a front's least energy is quoted: that of Case C.
+GRAVITY_M_PER_S2 = 9.81  #: The default of MuJoCo, also used for the paper's m g.
 
 
 ConstraintName = Literal[
@@ -371,6 +342,5 @@ ConstraintName = Literal[
     "bearing_room", "face_width", "flank_strength", "root_strength", "overload_strength", "output_bearing",
     "planet_bearing",
 ]  # fmt: skip
-"""Names of the rules in ``rules.CONSTRAINTS``. They stand here because the rules read the settings, which check names,
-and because the command line lists them without any of that."""
+"""Names of ``rules.CONSTRAINTS``, here for settings and commands that only check names."""
 CONSTRAINT_NAMES: tuple[ConstraintName, ...] = get_args(ConstraintName)

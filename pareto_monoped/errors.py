@@ -1,29 +1,18 @@
 """Everything that this package raises on purpose.
 
-The exceptions are a tree::
+The exceptions are a tree, and each docstring says what the exception means::
 
-    ParetoMonopedError          everything this package raises on purpose; exit code 1
-    |-- InputError              what the user gave cannot be used; exit code 2
-    |   |-- DesignError         a design variable or a robot that cannot be built
-    |   |-- MotorError          a motor name or a motor file
-    |   |-- CalibrationError    a calibration name or a calibration file
-    |   |-- StudyError          a study file, or a change that the stored study forbids
-    |   |-- DatabaseError       a database that is missing, damaged, locked or not a study
-    |   |   `-- LostTrialsError a database that lacks trials which were safe
-    |   |-- SelectionError      a selection that no design on the front meets
-    |   `-- OutputError         a file or folder that cannot be written or must not be overwritten
-    |-- DiskError               a disk, or another limit of the system, that is full or fails
-    |-- ServerError             a database server that does not answer, or is gone
-    |-- SimulationError         a simulation that should have worked failed
-    |-- WorkerError             no worker process or cluster that can do the work
-    `-- CheckError              an export failed its own checks (overlap, open mesh, ...)
+    ParetoMonopedError                  exit code 1
+    |-- InputError                      exit code 2
+    |   |-- DesignError, MotorError, CalibrationError, StudyError, SelectionError, OutputError
+    |   `-- DatabaseError
+    |       `-- LostTrialsError
+    `-- DiskError, ServerError, SimulationError, WorkerError, CheckError
 
 Every message is one line that gives the quantity, its value, what is allowed, and the cure, in one of two forms::
 
     knee_ratio = 3: must be 4 to 8.7; choose another value
     motor file 'my.toml': no such file; check the path
-
-What only some commands need: the extras of ``pyproject.toml``, and one message for all that are not installed.
 """
 
 import difflib
@@ -105,19 +94,17 @@ class CheckError(ParetoMonopedError):
     """An export failed its own checks; the message names the parts and the measured values."""
 
 
-_SHOWN = 400
-"""Most characters that a message shows of a value, such as a list; our own choice, more than any path has."""
-_ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
-"""Where an object is in memory, as Python's own ``repr`` ends."""
+_SHOWN = 400  #: Most characters that a message shows of a value: more than any path has. Our own choice.
+_ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")  #: Where an object is in memory, as Python's own ``repr`` ends.
 
 
 def complaint(quantity: str, value: object, allowed: str, cure: str) -> str:
-    """The message of an error in the first of the two forms above."""
+    """Return the message of an error in the first of the two forms above."""
     return f"{quantity} = {shown(value)}: must be {allowed}; {cure}"
 
 
 def shown(value: object) -> str:
-    """A value as a message shows it: without an address in memory, and a table or a large object by its kind alone."""
+    """Return a value as messages show it: without memory addresses, a table or a large object by its kind alone."""
     text = _ADDRESS.sub("", repr(value))
     large = len(text) > _SHOWN and not isinstance(value, str | list | tuple | dict)
     if large or "\n" in text:
@@ -126,13 +113,9 @@ def shown(value: object) -> str:
 
 
 def unknown_name(quantity: str, value: object, known: Iterable[str], other: str = "") -> str:
-    """The complaint about a name that is none of those known; its cure is the most similar one if there is one.
+    """Return the complaint about a name that is not known; its cure is the most similar known one if there is one.
 
-    Args:
-        quantity: what has the name.
-        value: the name given.
-        known: the names that there are.
-        other: what may be given besides a name, such as ", or a TOML file".
+    ``quantity`` is what has the name; ``other`` is what may be given besides a name, such as ", or a TOML file".
     """
     names = {name.casefold(): name for name in known}
     near = difflib.get_close_matches(str(value).casefold(), names, n=1)
@@ -147,18 +130,11 @@ EXTRAS = {
     "parquet": {"pyarrow": "pyarrow"},
     "postgres": {"psycopg": "psycopg[binary]"},
     "video": {"imageio_ffmpeg": "imageio-ffmpeg"},
-}
-"""Extra -> its modules, each with the package that has it. An extra whose programs are not called from here is not
-among them."""
+}  #: Extra -> its modules, each with the package that has it; extras that are only run as programs are left out.
 
 
 def require_extra(extra: str, what: str, *, instead: str = "") -> None:
-    """Refuse to begin what needs an extra that is not installed.
-
-    Args:
-        extra: one of ``EXTRAS``.
-        what: what needs it, such as an option.
-        instead: what does without it, if there is something.
+    """Refuse to begin ``what``, such as an option, without the packages of an extra; ``instead`` does without them.
 
     Raises:
         InputError: one of its packages is missing.

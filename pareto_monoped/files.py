@@ -1,6 +1,6 @@
 """Write files so that they are complete or absent: first beside the target, then renamed.
 
-No output replaces a study, and none replaces a file of another kind unless it is told to.
+No output replaces a study, and none replaces a file of another kind unless ``force`` is set.
 """
 
 import errno
@@ -13,10 +13,8 @@ from pathlib import Path
 
 from pareto_monoped.errors import DiskError, OutputError
 
-SQLITE = b"SQLite format 3\x00"
-"""How a database begins (SQLite's file format, section 1.3)."""
-FORCE = "--force (in Python force=True)"
-"""What allows an output to be replaced, on the command line and in Python."""
+SQLITE = b"SQLite format 3\x00"  #: How a database begins (SQLite's file format, section 1.3).
+FORCE = "--force (in Python force=True)"  #: What allows an output to be replaced, on the command line and in Python.
 _BESIDE_A_DATABASE = ("-wal", "-shm", "-journal", "-lock")
 
 
@@ -26,13 +24,9 @@ def replacing(path: Path, *, force: bool = False) -> Iterator[Path]:
 
     The temporary file keeps the suffix of ``path``, for writers that choose the format by it.
 
-    Args:
-        path: the file to write.
-        force: whether it may replace a file of another kind.
-
     Raises:
-        OutputError: the folder is missing or cannot be written to, or ``path`` is a database, a device, or a file of
-            another kind.
+        OutputError: the folder is missing or cannot be written to, or ``path`` is a database, a device, or, without
+            ``force``, a file of another kind.
         DiskError: the disk is full or fails.
     """
     refuse_database(path)
@@ -57,9 +51,7 @@ def replacing(path: Path, *, force: bool = False) -> Iterator[Path]:
 def temporary_beside(path: Path, temporary: Path | None = None) -> Iterator[Path]:
     """Yield a new, empty file beside ``path``, with its suffix and ordinary permissions; at the end it is deleted.
 
-    Args:
-        path: the file.
-        temporary: name of the new file, for a writer that holds a lock. What a killed writer left there is deleted.
+    A writer that holds a lock gives the new file's name; what a killed writer left there is deleted.
 
     Raises:
         OutputError: the folder is missing or cannot be written to.
@@ -82,11 +74,7 @@ def temporary_beside(path: Path, temporary: Path | None = None) -> Iterator[Path
 
 
 def refuse_database(path: Path) -> None:
-    """Refuse to write over a study, any other database, a file that belongs to one, or a device.
-
-    Raises:
-        OutputError: it is one.
-    """
+    """Raise ``OutputError`` for a study, any other database, a file that belongs to one, or a device."""
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError):
@@ -101,12 +89,7 @@ def refuse_database(path: Path) -> None:
 
 
 def require_writable(path: Path) -> None:
-    """Refuse an output that could not be written, before the work of which it is to tell.
-
-    Raises:
-        OutputError: its folder is missing or cannot be written to, or see ``refuse_database``.
-        DiskError: the disk is full or fails.
-    """
+    """Refuse an output that could not be written, before work is done for it; raises as ``temporary_beside`` does."""
     refuse_database(path)
     with temporary_beside(path):
         pass
@@ -123,9 +106,10 @@ def _beginning(path: Path) -> bytes:
 
 
 def _kind(path: Path) -> tuple[bytes, ...]:
-    """How files of this kind begin; empty for an empty file.
+    """Return how files of this kind begin; empty for an empty file.
 
-    Of pictures their magic number, of tables the name of the first column, of other text the beginnings of its lines.
+    For pictures this is the magic number, for tables the first column's name, for other text the beginnings of its
+    lines.
     """
     content = _beginning(path)
     if content[4:8] == b"ftyp":  # MP4 begins with the length of its first box
@@ -139,10 +123,8 @@ def _kind(path: Path) -> tuple[bytes, ...]:
     return tuple(line.strip()[:_TOLD] for line in lines[:_LINES])
 
 
-_MAGIC = (b"\x89PNG", b"GIF8", b"\x1aE\xdf\xa3", b"PAR1")
-"""How PNG, GIF, WebM and Parquet files begin."""
-_LINES, _TOLD = 5, 24
-"""Lines, and bytes of each, that tell a page or model from others: our own choice, as long as ours have in common."""
+_MAGIC = (b"\x89PNG", b"GIF8", b"\x1aE\xdf\xa3", b"PAR1")  #: How PNG, GIF, WebM and Parquet files begin.
+_LINES, _TOLD = 5, 24  #: Lines, and bytes of each, that tell pages and models from others. Our own choice.
 
 
 _FAILURES = {
@@ -154,8 +136,7 @@ _FAILURES = {
     errno.ENFILE: "close other programs",
     errno.ENOMEM: "close other programs",
     errno.EAGAIN: "close other programs",
-}
-"""Errors of a system that is full or fails, whatever file it is about, and their cures."""
+}  #: Errors of a system that is full or fails, whatever file it is about, and their cures.
 _REFUSALS = {
     errno.ENOENT: "check the path",
     errno.ENOTDIR: "check the path",
@@ -167,12 +148,12 @@ _REFUSALS = {
 
 
 def is_failure(error: OSError) -> bool:
-    """Whether the system is full or fails, rather than that what the user gave cannot be used."""
+    """Return whether the system is full or fails, rather than that what the user gave cannot be used."""
     return error.errno in _FAILURES
 
 
 def cure_of(error: OSError) -> str:
-    """What helps against an error of the system."""
+    """Return what helps against an error of the system."""
     number = error.errno or 0
     return (_FAILURES | _REFUSALS).get(number, "allow access to it, or give another")
 
@@ -181,7 +162,7 @@ ADRIFT = "working directory: has been deleted; change to a folder that exists"
 
 
 def is_adrift() -> bool:
-    """Whether the working directory is no more: names of files then lead nowhere, and no process can be started."""
+    """Return whether the working directory was deleted: names of files then lead nowhere, and no process can start."""
     try:
         os.getcwd()
     except FileNotFoundError:
@@ -190,13 +171,7 @@ def is_adrift() -> bool:
 
 
 def unwritable(path: Path, error: OSError, cure: str) -> OutputError | DiskError:
-    """The error for a file or folder that the system does not let us write.
-
-    Args:
-        path: the file or folder.
-        error: what the system said.
-        cure: what helps, unless the system itself is full or fails.
-    """
+    """Return the error for a path that cannot be written; ``cure`` helps unless the system is full or fails."""
     if error.errno == errno.ENOENT and is_adrift():
         return OutputError(ADRIFT)
     kind = DiskError if is_failure(error) else OutputError

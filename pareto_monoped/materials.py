@@ -4,22 +4,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from pareto_monoped.config import checked, read_shipped
+from pareto_monoped.config import Positive, Strict, checked, read_shipped
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+T = TypeVar("T")
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
-_STRICT = ConfigDict(extra="forbid")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Material:
+class Material(Strict):
     """A material."""
-
-    __pydantic_config__ = _STRICT
 
     name: str  #: in words, as it stands in parts lists
     density_kg_per_m3: Positive  #: mass over volume
@@ -60,10 +57,8 @@ class GearMaterial(ElasticMaterial):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Alloy:
+class Alloy(Strict):
     """An alloy in one condition, as it is ordered."""
-
-    __pydantic_config__ = _STRICT
 
     name: str  #: designation and condition, as they stand in parts lists and on drawings
     hardness: str  #: in words, with its scale
@@ -74,10 +69,8 @@ Treatment = Literal["case_hardened", "nitrided", "through_hardened"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GearGrade:
+class GearGrade(Strict):
     """A steel grade in one heat treatment, as ISO 6336-5 rates it."""
-
-    __pydantic_config__ = _STRICT
 
     name: str  #: steel and treatment in words, as it stands in parts lists
     treatment: Treatment  #: which S-N curves and notch factors apply
@@ -110,10 +103,8 @@ class Elastomer(Material):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Materials:
+class Materials(Strict):
     """All materials: one table of ``data/materials.toml`` each."""
-
-    __pydantic_config__ = _STRICT
 
     aluminium: ElasticMaterial
     steel: ElasticMaterial
@@ -129,8 +120,7 @@ class Materials:
     fluoroelastomer: Elastomer
 
 
-_GRADES, _ALLOYS = "gear_grades", "alloys"
-"""The tables of the file whose own tables are no materials, but grades of gear steel and alloys."""
+_GRADES, _ALLOYS = "gear_grades", "alloys"  #: Tables of the file whose own tables are gear steels and alloys.
 
 
 @lru_cache(maxsize=1)
@@ -145,21 +135,13 @@ def _shipped() -> Materials:
     return checked(Materials, named, source="materials")
 
 
-def _shipped_grades() -> Mapping[str, GearGrade]:
-    tables = _file()[_GRADES]
-    grades = {key: checked(GearGrade, table, source=f"materials: {_GRADES}.{key}") for key, table in tables.items()}
-    return MappingProxyType(grades)
+def _shipped_tables(kind: type[T], name: str) -> Mapping[str, T]:
+    tables = _file()[name].items()
+    return MappingProxyType({key: checked(kind, table, source=f"materials: {name}.{key}") for key, table in tables})
 
 
-def _shipped_alloys() -> Mapping[str, Alloy]:
-    tables = _file()[_ALLOYS]
-    alloys = {key: checked(Alloy, table, source=f"materials: {_ALLOYS}.{key}") for key, table in tables.items()}
-    return MappingProxyType(alloys)
-
-
-MATERIALS = _shipped()
-"""The materials that ship with the package."""
-ALLOYS = _shipped_alloys()
-"""The alloys that ship with the package, by the names that the parts use."""
-GEAR_GRADES = _shipped_grades()
-"""The steel grades that ship with the package, by the names that the settings use."""
+MATERIALS = _shipped()  #: The materials that ship with the package.
+ALLOYS = _shipped_tables(Alloy, _ALLOYS)  #: The alloys that ship with the package, by the names that the parts use.
+GEAR_GRADES = _shipped_tables(
+    GearGrade, _GRADES
+)  #: The steel grades that ship with the package, by the names that the settings use.

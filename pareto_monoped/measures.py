@@ -23,9 +23,8 @@ from typing import Annotated, Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import BASE_START_HEIGHT_M
+from pareto_monoped.design import BASE_START_HEIGHT_M, Floats
 
-Floats = NDArray[np.float64]
 Direction = Literal["maximise", "minimise"]
 
 
@@ -61,7 +60,7 @@ class Measure:
         return self.label.removesuffix(f", {self.meaning}")
 
     def text(self, value: float) -> str:
-        """``value`` in the stored unit, as it is shown, such as "12.3 mm"."""
+        """Return ``value`` in the stored unit, as it is shown, such as "12.3 mm"."""
         return f"{value * self.scale:.{self.decimals}f} {self.shown_unit}".removesuffix(" 1")
 
 
@@ -76,10 +75,7 @@ def _row(
     short: str = "",
     **more: Any,
 ) -> Measure:
-    """Describe a measure, which is shown in its stored unit unless ``shown`` gives another unit and the factor to it.
-
-    ``_described`` gives it the name of its field. Without ``short``, the label is short enough.
-    """
+    """Describe a measure, shown in its stored unit unless ``shown`` gives another unit and the factor to it."""
     shown_unit, scale = shown or (unit, 1.0)
     return Measure(
         name="",
@@ -224,10 +220,7 @@ class JumpMeasures:
 
 
 MEASURES: tuple[Measure, ...] = _described(JumpMeasures)
-"""Every measure of a jump, with its name, unit, meaning and which way is better.
-
-They stand in the order of the fields of ``jump.evaluate.Evaluations`` and of the database columns.
-"""
+"""Every measure of a jump, in the order of the fields of ``jump.evaluate.Evaluations`` and of the database columns."""
 MEASURE_NAMES: tuple[str, ...] = tuple(measure.name for measure in MEASURES)
 ENERGIES: tuple[str, ...] = tuple(measure.name for measure in MEASURES if measure.work_share)
 """What a jump costs: the energies that are never less than the work against gravity, m g (H - start height)."""
@@ -274,8 +267,7 @@ class AuditMeasures:
     # fmt: on
 
 
-AUDIT_MEASURES: tuple[Measure, ...] = _described(AuditMeasures)
-"""Every measure of an audit, in the order of the fields of ``jump.audit.Audits``."""
+AUDIT_MEASURES: tuple[Measure, ...] = _described(AuditMeasures)  #: In the order of the fields of ``jump.audit.Audits``.
 
 _COARSE = f"step doubled and {_PERTURBED}"
 
@@ -298,7 +290,7 @@ class ScreenMeasures:
 
 
 SCREEN_MEASURES: tuple[Measure, ...] = _described(ScreenMeasures)
-"""Every measure of the screen before an audit, in the order of the fields of ``jump.screen.Screened``."""
+"""In the order of the fields of ``jump.screen.Screened``."""
 
 STATISTICS: dict[str, str] = {"mean": "mean", "p05": "5th percentile", "p95": "95th percentile"}
 """What can be asked of a measure under uncertainty: key behind the measure's name, as in "height_m.p05", and words."""
@@ -315,8 +307,7 @@ class _Shares:
     # fmt: on
 
 
-SHARE_MEASURES: tuple[Measure, ...] = _described(_Shares)
-"""Measures of many jumps of one design, each with other values of what is uncertain."""
+SHARE_MEASURES: tuple[Measure, ...] = _described(_Shares)  #: Of many jumps of one design under uncertainty.
 
 
 def _statistic_of(base: Measure, key: str) -> Measure:
@@ -338,43 +329,34 @@ def _statistic_of(base: Measure, key: str) -> Measure:
 ROBUST_MEASURES: tuple[Measure, ...] = (
     *SHARE_MEASURES,
     *(_statistic_of(base, key) for base in MEASURES for key in STATISTICS),
-)
-"""Every measure of a design under uncertainty; a study stores those that it asks for."""
+)  #: Every measure of a design under uncertainty; a study stores those that it asks for.
 ROBUST_NAMES: tuple[str, ...] = tuple(measure.name for measure in ROBUST_MEASURES)
-GOAL_NAMES: tuple[str, ...] = (*MEASURE_NAMES, *ROBUST_NAMES)
-"""What a study can ask for."""
+GOAL_NAMES: tuple[str, ...] = (*MEASURE_NAMES, *ROBUST_NAMES)  #: What a study can ask for.
 
-OWN = "own_"
-"""What the name of a measure that is a function of the user's own begins with."""
+OWN = "own_"  #: What the name of a measure that is a function of the user's own begins with.
 _OWN = re.compile(rf"{OWN}[A-Za-z_][A-Za-z0-9_]{{0,99}}")
-OWN_REFERENCE = 1000.0
-"""Corner of the hypervolume for an own objective whose study names none. Our own choice: nothing is known of the
-function, and values beyond the corner add no volume, so it is far off."""
+OWN_REFERENCE = 1000.0  #: Corner of the hypervolume, far off, for an own objective whose study names none.
 
 _BY_NAME = {measure.name: measure for measure in (*MEASURES, *AUDIT_MEASURES, *SCREEN_MEASURES, *ROBUST_MEASURES)}
 
 
 def measure(name: str) -> Measure:
-    """The measure called ``name``, of a jump, of a design under uncertainty, or of an audit.
-
-    Raises:
-        KeyError: there is none.
-    """
+    """Return the measure called ``name`` of a jump, an audit, or a design under uncertainty, or raise ``KeyError``."""
     return _own_measure(name) if is_own(name) else _BY_NAME[name]
 
 
 def is_own(name: object) -> bool:
-    """Whether a measure is a function of the user's own, such as "own_landing_speed" for ``landing_speed``."""
+    """Return whether a measure is a function of the user's own, such as "own_landing_speed" for ``landing_speed``."""
     return isinstance(name, str) and _OWN.fullmatch(name) is not None
 
 
 def is_goal(name: object) -> bool:
-    """Whether a study can ask for a measure of that name."""
+    """Return whether a study can ask for a measure of that name."""
     return isinstance(name, str) and (name in GOAL_NAMES or is_own(name))
 
 
 def _own_measure(name: str) -> Measure:
-    """The measure that an own function is. Less is better; its unit is known only to the function."""
+    """Return the measure that an own function is. Less is better; its unit is known only to the function."""
     function = name.removeprefix(OWN)
     words = function.replace("_", " ").strip()
     return Measure(
@@ -391,28 +373,22 @@ def _own_measure(name: str) -> Measure:
 
 
 def is_robust(name: str) -> bool:
-    """Whether a measure is of many jumps under uncertainty."""
+    """Return whether a measure is of many jumps under uncertainty."""
     return name in _ROBUST
 
 
 def nominal(name: str) -> str:
-    """The measure of a single jump that a name is about: "height_m" for itself and for "height_m.p05"."""
+    """Return the measure of a single jump that a name is about: "height_m" for itself and for "height_m.p05"."""
     return name.partition(".")[0]
 
 
 _ROBUST = frozenset(ROBUST_NAMES)
 
-_MOST_NEAR = 3
-"""Names that are told of those nearest to one that is unknown; our own choice: a line holds them."""
+_MOST_NEAR = 3  #: Names that are told of those nearest to one that is unknown; our own choice: a line holds them.
 
 
 def near_measures(name: object, known: Sequence[str]) -> str:
-    """The cure for an unknown name: the most similar one, or the nearest few and where all are.
-
-    Args:
-        name: as it was given.
-        known: names that may be given.
-    """
+    """Return the cure for an unknown name: the most similar known one, or the nearest few and where all are."""
     if near := difflib.get_close_matches(str(name), known, n=1):
         return f"did you mean {near[0]!r}?"
     plain = [one for one in known if not is_robust(one)]

@@ -1,8 +1,6 @@
-"""Checks of plain values that scripts give.
+"""Checks of what scripts give: plain values, designs in every form, motors, own functions and own calibrations.
 
-Designs in every form that scripts have them, and what they say of their motors.
-
-What a script brings along: its own functions among the goals of a study, and its own calibration.
+A function that refuses its argument raises an ``InputError`` of the kind that fits; ``what`` names it in the message.
 """
 
 import difflib
@@ -38,11 +36,7 @@ if TYPE_CHECKING:
 
 
 def executor_of(given: Any) -> Any:
-    """Something that does calls elsewhere, or None where none is given.
-
-    Raises:
-        InputError: something else.
-    """
+    """Return something that does calls elsewhere, or None where none is given."""
     if given is None or isinstance(given, Executor):
         return given
     allowed = "a concurrent.futures.Executor, such as a ProcessPoolExecutor"
@@ -50,44 +44,28 @@ def executor_of(given: Any) -> Any:
 
 
 def seed_of(given: Any) -> int:
-    """The seed of a random generator.
-
-    Raises:
-        InputError: no whole number from 0 to 2**63 - 1.
-    """
+    """Return the seed of a random generator, a whole number from 0 to 2**63 - 1."""
     if isinstance(given, bool) or not isinstance(given, Integral) or not 0 <= int(given) < 2**63:
         raise InputError(complaint("seed", given, "a whole number from 0 to 2**63 - 1", "correct it"))
     return int(given)
 
 
 def trial_of(given: Any) -> int:
-    """The number of a trial.
-
-    Raises:
-        InputError: no whole number of at least 0.
-    """
+    """Return the number of a trial, a whole number of at least 0."""
     if isinstance(given, bool) or not isinstance(given, Integral) or given < 0:
         raise InputError(complaint("trial", given, "the number of a trial, from 0", "give one"))
     return int(given)
 
 
 def truth_of(what: str, given: Any) -> bool:
-    """True or False.
-
-    Raises:
-        InputError: something else, which might count as either.
-    """
+    """Return True or False; anything else is refused, because it might count as either."""
     if not isinstance(given, bool | np.bool_):
         raise InputError(complaint(what, given, "True or False", "give one of them"))
     return bool(given)
 
 
 def number_of(what: str, given: Any) -> float:
-    """A finite number.
-
-    Raises:
-        InputError: something else.
-    """
+    """Return a finite number."""
     if isinstance(given, Real) and not isinstance(given, bool):
         try:
             number = float(given)
@@ -99,11 +77,7 @@ def number_of(what: str, given: Any) -> float:
 
 
 def numbers_of(what: str, given: Any) -> tuple[float, ...]:
-    """Finite numbers from a list, an array or a series.
-
-    Raises:
-        InputError: something else.
-    """
+    """Return finite numbers from a list, an array or a series."""
     values = as_list(given)
     if isinstance(values, str | bytes | Mapping) or not isinstance(values, Sequence):
         raise InputError(complaint(what, given, "a list of numbers", "give one"))
@@ -111,11 +85,7 @@ def numbers_of(what: str, given: Any) -> tuple[float, ...]:
 
 
 def table_of(what: str, given: Any) -> dict[str, float]:
-    """Finite numbers by name, from a mapping or a series.
-
-    Raises:
-        InputError: something else.
-    """
+    """Return finite numbers by name, from a mapping or a series."""
     values = as_table(given)
     if not isinstance(values, Mapping):
         raise InputError(complaint(what, given, "a mapping of names to numbers", "give one"))
@@ -143,11 +113,7 @@ class Given:
 
 
 def given_designs(designs: Any) -> Given:
-    """Designs in any form that ``simulate`` takes.
-
-    Raises:
-        DesignError: a missing or unknown variable, a value that is no number, or an array of another shape.
-    """
+    """Return designs from any form that ``simulate`` takes; raise ``DesignError`` for anything else."""
     several = designs if isinstance(designs, list | tuple) and designs else [designs]
     for one in several:
         if isinstance(getattr(one, "design", None), Design):
@@ -172,14 +138,9 @@ def given_designs(designs: Any) -> Given:
 
 
 def with_motors(designs: Any, maps: JointMaps) -> NDArray[np.float64]:
-    """Designs as an array of shape (n, number of variables), of which none says that it has other motors than these.
+    """Return designs as an array of shape (n, number of variables), in any form that ``simulate`` takes.
 
-    Args:
-        designs: in any form that ``simulate`` takes.
-        maps: the gearboxes of the motors that they get.
-
-    Raises:
-        DesignError: see ``given_designs``; or other motors, which would jump otherwise than what the frame says.
+    A frame that names other motors than those of ``maps`` is a ``DesignError``: it would jump otherwise than it says.
     """
     given = given_designs(designs)
     for row, motor in enumerate(given.motors):
@@ -190,11 +151,7 @@ def with_motors(designs: Any, maps: JointMaps) -> NDArray[np.float64]:
 
 
 def one_design(design: Any, maps: JointMaps) -> Design:
-    """One design in any form that ``trace`` takes, see ``with_motors``.
-
-    Raises:
-        DesignError: see ``with_motors``; or another number of designs.
-    """
+    """Return one design in any form that ``trace`` takes, see ``with_motors``."""
     values = with_motors(design, maps)
     if len(values) != 1:
         raise DesignError(complaint("number of designs", len(values), "1", "give one"))
@@ -206,7 +163,7 @@ def _unsaid(values: NDArray[np.float64]) -> Given:
 
 
 def _is_named(given: Any) -> bool:
-    """Whether something has names of variables: a mapping, a data frame, or a row of one."""
+    """Return whether something has names of variables: a mapping, a data frame, or a row of one."""
     if is_series(given):
         return any(isinstance(label, str) for label in given.index)
     return isinstance(given, Mapping) or hasattr(given, "columns")
@@ -227,7 +184,7 @@ def _of_designs(designs: Sequence[Design]) -> NDArray[np.float64]:
 
 
 def _of_columns(table: "Mapping[str, Any] | DataFrame") -> Given:
-    """Designs from one column per variable, or one value; other columns may be those of stored trials."""
+    """Return designs from one column per variable, or one value; other columns may be those of stored trials."""
     for name in table:
         if name not in _known() and not is_own(name):
             raise DesignError(f"designs: {name!r} is neither a variable nor a column of stored trials; {_near(name)}")
@@ -244,7 +201,6 @@ def _of_columns(table: "Mapping[str, Any] | DataFrame") -> Given:
 
 
 def _near(name: object) -> str:
-    """What to do about an unknown column."""
     for known in (NAMES, _known()):
         if near := difflib.get_close_matches(str(name), known, n=1):
             return f"did you mean {near[0]!r}?"
@@ -252,26 +208,25 @@ def _near(name: object) -> str:
 
 
 def _said(table: "Mapping[str, Any] | DataFrame", key: str, count: int) -> list[str]:
-    """What a column says of each row's motor; '' where it says nothing."""
+    """Return what a column says of each row's motor; '' where it says nothing."""
     column = np.asarray(table.get(key, ""), dtype=object)
     return [_text(value) for value in np.broadcast_to(np.atleast_1d(column), (count,)).tolist()]
 
 
 def _text(motor: Any) -> str:
-    """The name of a motor; '' for what pandas has in place of a missing one."""
+    """Return the name of a motor; '' for what pandas has in place of a missing one."""
     return "" if motor is None or isinstance(motor, float) or str(motor) == "<NA>" else str(motor)
 
 
 def _label(motor: str, hip: str, knee: str) -> str:
-    """The motors of one row as ``JointMaps.label`` has them."""
+    """Return the motors of one row as ``JointMaps.label`` has them."""
     return motor_label(hip or motor or "unknown", knee or motor or "unknown") if hip or knee else motor
 
 
 def own_calibration(given: Calibration) -> Calibration:
-    """A calibration that a script made, checked as one from a file.
+    """Return a calibration that a script made, checked as one from a file.
 
-    Raises:
-        CalibrationError: a value that no calibration can have, or a class of its own, whose behaviour no study stores.
+    A class of its own is refused, too, because no study stores its behaviour.
     """
     if type(given) is not Calibration:
         kind = type(given).__name__
@@ -290,11 +245,7 @@ def own_calibration(given: Calibration) -> Calibration:
 
 
 def stored_calibration_name(calibration: Calibration) -> str:
-    """The name under which a study stores a calibration that a script gives.
-
-    Raises:
-        CalibrationError: it has the name of a shipped one and other values.
-    """
+    """Return the name under which a study stores a script's calibration, which no shipped one may have."""
     if calibration.name not in calibration_names():
         return f"{OWN_CALIBRATION}{calibration.name}"
     if calibration.label in earlier_calibrations() and calibration == shipped_calibration(calibration.label):
@@ -308,11 +259,7 @@ def stored_calibration_name(calibration: Calibration) -> str:
 
 
 def called_after(callback: object) -> Callable[..., Any] | None:
-    """A callback, if it is one.
-
-    Raises:
-        StudyError: it cannot be called.
-    """
+    """Return a callback, or raise ``StudyError`` if it cannot be called."""
     if callback is None or callable(callback):
         return callback
     raise StudyError(complaint("callback", callback, "a function of the progress", "give one"))

@@ -34,7 +34,7 @@ AnyCalibration = Calibration | StrPath
 
 
 def load_motor(name_or_path: StrPath) -> Motor:
-    """A motor by the name of a shipped one (in any case), or from a TOML file with one motor.
+    """Return a motor by the name of a shipped one (in any case), or from a TOML file with one motor.
 
     Raises:
         MotorError: an unknown name, an unreadable file, or a field that is missing, unknown or impossible.
@@ -48,7 +48,7 @@ def load_motor(name_or_path: StrPath) -> Motor:
 
 
 def load_calibration(name_or_path: StrPath = DEFAULT) -> Calibration:
-    """A jump model by its name, or from a TOML file.
+    """Return a jump model by its name, or from a TOML file.
 
     Raises:
         CalibrationError: an unknown name, an unreadable file, or a field that is missing, unknown or out of range.
@@ -62,7 +62,7 @@ def load_calibration(name_or_path: StrPath = DEFAULT) -> Calibration:
 
 
 def actuator_map(motor: AnyMotor = PAPER_MOTOR, *, rules: RuleSet = DEFAULT_RULES) -> ActuatorMap:
-    """The lightest planetary gearbox of a motor for every gear ratio: stage 1 of the paper.
+    """Return the lightest planetary gearbox of a motor for every gear ratio: stage 1 of the paper.
 
     The search is exhaustive and takes a fraction of a second. A map is made once and kept while the process runs.
 
@@ -87,11 +87,7 @@ def actuator_map(motor: AnyMotor = PAPER_MOTOR, *, rules: RuleSet = DEFAULT_RULE
 
 
 def _own_motor(motor: Motor) -> Motor:
-    """A motor that a script made, checked as one from a file.
-
-    Raises:
-        MotorError: a value that no motor can have.
-    """
+    """Return a motor that a script made, checked as one from a file."""
     if type(motor) is not Motor:
         raise MotorError(
             f"motor {motor.name!r}: is a {type(motor).__name__}, must be a Motor itself; change the values of one: "
@@ -107,11 +103,7 @@ def _own_motor(motor: Motor) -> Motor:
 def joint_maps_of(
     motor: AnyMotor, hip_motor: AnyMotor | None, knee_motor: AnyMotor | None, rules: RuleSet
 ) -> JointMaps:
-    """The gearboxes of a robot's joints; a leg fits them.
-
-    Raises:
-        MotorError: an unusable motor, or one that no gearbox or no leg fits.
-    """
+    """Return the gearboxes of a robot's joints; raise ``MotorError`` if no gearbox or no leg fits a motor."""
     hip, knee = (actuator_map(motor if own is None else own, rules=rules) for own in (hip_motor, knee_motor))
     maps = JointMaps(hip=hip, knee=knee)
     require_leg(maps)
@@ -126,7 +118,7 @@ def build_robot(
     knee_motor: AnyMotor | None = None,
     rules: RuleSet = DEFAULT_RULES,
 ) -> Robot:
-    """The robot of a design with every part that has a mass, as it is simulated and exported.
+    """Return the robot of a design with every part that has a mass, as it is simulated and exported.
 
     Args:
         design: its variables, in one of the forms that ``trace`` takes.
@@ -201,14 +193,9 @@ def jumps_of(
     workers: int | None,
     motors: NDArray[np.intp] | None = None,
 ) -> "DataFrame":
-    """The rows of ``simulate``, with gearboxes that are already made.
+    """Return the rows of ``simulate`` with gearboxes ``kits`` that are already made.
 
-    Args:
-        values: of the designs, shape (n, number of variables).
-        kits: the gearboxes of each kit of motors.
-        calibration: the jump model.
-        workers: number of threads, all cores if None.
-        motors: which of ``kits`` each design has, shape (n,); the first if None.
+    ``motors`` has the row of ``kits`` for each design, shape (n,); None means the first.
     """
     import pandas as pd
 
@@ -228,7 +215,7 @@ def trace(
     calibration: AnyCalibration = DEFAULT,
     rules: RuleSet | None = None,
 ) -> "DataFrame":
-    """One jump step by step: states, torques, forces and energies, in the units of their names.
+    """Return one jump step by step: states, torques, forces and energies, in the units of their names.
 
     Args:
         design: one design: a ``Design``, a mapping of variables, or a row of a data frame; see ``simulate``.
@@ -271,7 +258,7 @@ def trace(
 
 
 def calibrated(calibration: AnyCalibration, rules: RuleSet | None) -> tuple[Calibration, RuleSet]:
-    """The calibration, and the rules of gearboxes that go with it."""
+    """Return the calibration, and the rules of gearboxes that go with it."""
     if isinstance(calibration, Calibration):
         model = own_calibration(calibration)
         return model, rules_for(model.name, rules)
@@ -283,7 +270,6 @@ _NAME = "a name or the path of a TOML file"
 
 
 def _name(given: StrPath, what: str, error: type[MotorError] | type[CalibrationError], allowed: str = _NAME) -> str:
-    """A name or path as text."""
     if isinstance(given, str | PathLike) and isinstance(text := fspath(given), str):
         try:
             Path(text).is_file()

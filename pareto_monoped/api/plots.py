@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.api.given import truth_of
 from pareto_monoped.api.studies import StoredStudy
+from pareto_monoped.design import Floats
 from pareto_monoped.errors import InputError, complaint, unknown_name
 from pareto_monoped.measures import MEASURE_NAMES, is_goal, measure
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 Backend = Literal["plotly", "matplotlib"]
-Floats = NDArray[np.float64]
 # Okabe and Ito's colours, which the report also uses.
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#b0548a", "#b87d00", "#2f9bd8")
 _PALE = 0.25
@@ -53,7 +52,7 @@ def plot_front(
     trials: bool = True,
     backend: Backend = "plotly",
 ) -> Any:
-    """The fronts of one study or several, with all feasible trials behind them.
+    """Return the fronts of one study or several, with all feasible trials behind them.
 
     Args:
         studies: one or several, drawn over each other.
@@ -97,7 +96,7 @@ def plot_front(
 
 
 def plot_actuators(*maps: ActuatorMap, backend: Backend = "plotly") -> Any:
-    """Mass of the lightest actuator over the gear ratio, for one motor or several.
+    """Return the mass of the lightest actuator over the gear ratio, for one motor or several.
 
     Args:
         maps: see ``actuator_map``.
@@ -134,7 +133,7 @@ def plot_actuators(*maps: ActuatorMap, backend: Backend = "plotly") -> Any:
 
 
 def plot_jump(trace: "DataFrame", *, backend: Backend = "plotly") -> Any:
-    """Heights, joint angles and motor torques of one jump over time.
+    """Return heights, joint angles and motor torques of one jump over time.
 
     Args:
         trace: see ``trace``.
@@ -184,13 +183,10 @@ def _title(name: str) -> str:
 
 
 def _drawn(panels: Sequence[_Panel], backend: Backend) -> Any:
-    if not isinstance(backend, str):
+    drawn_by = {"plotly": _by_plotly, "matplotlib": _by_matplotlib}
+    if not isinstance(backend, str) or backend not in drawn_by:
         raise InputError(complaint("backend", backend, "'plotly' or 'matplotlib'", "correct it"))
-    if backend == "plotly":
-        return _by_plotly(panels)
-    if backend == "matplotlib":
-        return _by_matplotlib(panels)
-    raise InputError(complaint("backend", backend, "'plotly' or 'matplotlib'", "correct it"))
+    return drawn_by[backend](panels)
 
 
 def _by_plotly(panels: Sequence[_Panel]) -> Any:

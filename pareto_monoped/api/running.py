@@ -1,7 +1,4 @@
-"""Run, resume and make robust: studies that grow, from scripts.
-
-How stored designs jump as robots are built, from scripts.
-"""
+"""Run and resume studies from scripts, and let stored designs jump as robots are built."""
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
@@ -38,17 +35,12 @@ if TYPE_CHECKING:
 _STUDY = "a Study, or the path of a study file"
 _CALIBRATION = "a Calibration, the name of a shipped one, or the path of a TOML file"
 
-Goal = str | OwnFunction
-"""A measure by its name, or an own function."""
+Goal = str | OwnFunction  #: A measure by its name, or an own function.
 Limits = Mapping[Any, Any] | OwnFunction | Sequence[Any]
 
 
 def objective_names(objectives: Sequence[Goal]) -> tuple[list[str], dict[str, OwnFunction]]:
-    """Names of objectives, and the own functions among them.
-
-    Raises:
-        StudyError: no list, or something in it that is neither a name nor a function.
-    """
+    """Return names of objectives, and the own functions among them; raise ``StudyError`` for anything else."""
     several = as_list(objectives)
     if isinstance(several, str | Mapping) or not isinstance(several, Sequence):
         allowed = "a list of two or three measures or functions, such as ['height_m', 'energy_j']"
@@ -58,14 +50,11 @@ def objective_names(objectives: Sequence[Goal]) -> tuple[list[str], dict[str, Ow
 
 
 def limits_of(constraints: Limits) -> tuple[dict[str, Any], dict[str, OwnFunction]]:
-    """Limits by their stored keys, such as "max_mass_kg", and the own functions that they are of.
+    """Return limits by their stored keys, such as "max_mass_kg", and the own functions that they limit.
 
-    Args:
-        constraints: a mapping of measures, or functions, to their limits; or a function, which holds at <= 0; or a list
-            of such mappings and functions.
-
-    Raises:
-        StudyError: something else, or a limit that is given twice, in whatever spelling.
+    ``constraints`` is a mapping of measures, or functions, to their limits; or a function, which holds at <= 0; or a
+    list of such mappings and functions. Anything else, or a limit given twice in whatever spelling, is a
+    ``StudyError``.
     """
     given = as_table(constraints)
     parts = [given] if isinstance(given, Mapping) or callable(given) else given
@@ -91,7 +80,6 @@ def limits_of(constraints: Limits) -> tuple[dict[str, Any], dict[str, OwnFunctio
 
 
 def _flattened(name: str, limits: Any) -> dict[str, Any]:
-    """The limits of one measure in their stored form."""
     if not isinstance(limits, Mapping):
         return {name: limits}
     if not limits or not set(limits) <= {"min", "max"}:
@@ -273,7 +261,7 @@ def _database(study: Study | StrPath, db: StrPath | StudyPlace | None) -> StudyP
 def _goals(
     study: Study, objectives: Sequence[Goal] | None, constraints: Limits | None
 ) -> tuple[dict[str, Any], dict[str, OwnFunction]]:
-    """The keys of a study that other goals change, and the own functions among them."""
+    """Return the keys of a study that other goals change, and the own functions among them."""
     changes: dict[str, Any] = {}
     functions: dict[str, OwnFunction] = {}
     if objectives is not None:
@@ -289,7 +277,7 @@ def _goals(
 
 
 def _own_algorithm(algorithm: Any) -> Any:
-    """An algorithm that is not one of the package's by its name; else None."""
+    """Return an algorithm that is not one of the package's by its name; else None."""
     return None if algorithm is None or isinstance(algorithm, str | Mapping) else algorithm
 
 
@@ -298,7 +286,7 @@ def _settings(algorithm: str | Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _changed(study: Study, changes: Mapping[str, Any]) -> Study:
-    """The study with other values for some keys, in their stored form."""
+    """Return the study with other values for some keys, in their stored form."""
     values = study.as_dict() | dict(changes)
     if values == study.as_dict():
         return study
@@ -376,7 +364,6 @@ def robust(
 
 
 def _numbers(trials: Any) -> list[int] | None:
-    """Numbers of trials."""
     if trials is None:
         return None
     listed = as_list(trials)

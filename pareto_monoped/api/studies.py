@@ -14,19 +14,7 @@ from pareto_monoped.definition.given import as_list, count_of
 from pareto_monoped.design import NAMES, Design
 from pareto_monoped.errors import DesignError, InputError, SelectionError, StudyError, complaint
 from pareto_monoped.measures import is_own, near_measures
-from pareto_monoped.pareto.selectors import (
-    CONDITION_NAMES,
-    Among,
-    Chooser,
-    Compromise,
-    Condition,
-    Knee,
-    MaxEnergy,
-    Nearest,
-    Tradeoff,
-    Trial,
-    Weights,
-)
+from pareto_monoped.pareto import selectors
 from pareto_monoped.storage.address import is_address
 from pareto_monoped.storage.place import StudyPlace, place_of
 
@@ -58,7 +46,7 @@ class Picked:
     why: str  #: the reason in one sentence
 
     def __repr__(self) -> str:
-        """One line: the trial and the reason."""
+        """Return one line: the trial and the reason."""
         return f"Picked(trial={self.trial}, why={self.why!r})"
 
 
@@ -78,7 +66,7 @@ class StoredStudy:
     data: "StudyData"  #: everything that was read; its form may change between versions
 
     def __repr__(self) -> str:
-        """One line: name, place, trials and objectives."""
+        """Return one line: name, place, trials and objectives."""
         trials, state = len(self.data.trials), "finished" if self.finished else "not finished"
         names = ", ".join(self.study.objectives.names)
         return f"StoredStudy({self.study.name!r}, {str(self.path)!r}, {trials} trials, {state}, objectives {names})"
@@ -97,7 +85,7 @@ class StoredStudy:
         return self.data.meta.finished
 
     def front(self, objectives: Sequence[str] | None = None, *, include_ill_conditioned: bool = False) -> "DataFrame":
-        """The non-dominated feasible trials by the first objective, from its least value to its greatest.
+        """Return the non-dominated feasible trials by the first objective, from its least value to its greatest.
 
         Args:
             objectives: two or three measures, instead of the study's own.
@@ -163,11 +151,11 @@ class StoredStudy:
                 "pick: nothing is asked for; give by='knee', or min_height_m, or one of the other arguments"
             )
         refuse_empty(front, self.data)
-        found = pick(front, Among(conditions=conditions, chooser=ways[0] if ways else None), chosen)
+        found = pick(front, selectors.Among(conditions=conditions, chooser=ways[0] if ways else None), chosen)
         return Picked(trial=found.trial, design=self.design(found.trial), row=self._row(found.trial), why=found.why)
 
     def design(self, trial: int) -> Design:
-        """The design of a trial.
+        """Return the design of a trial.
 
         Raises:
             SelectionError: no trial has this number.
@@ -175,7 +163,7 @@ class StoredStudy:
         return Design.from_array([self._row(trial)[name] for name in NAMES])
 
     def motors(self, trial: int) -> tuple[str, str]:
-        """Names of the motors of a trial's hip and knee, for ``simulate`` and ``build_robot``.
+        """Return names of the motors of a trial's hip and knee, for ``simulate`` and ``build_robot``.
 
         Raises:
             SelectionError: no trial has this number.
@@ -261,14 +249,14 @@ class StoredStudy:
 
 
 def _rows(designs: Any) -> Any:
-    """Designs, with the rows of the trials, which name their motors, in place of what ``pick`` returned."""
+    """Return designs, with the rows of the trials, which name their motors, in place of what ``pick`` returned."""
     if isinstance(designs, list | tuple):
         return [_rows(one) if isinstance(one, Picked) else one for one in designs]
     return designs.row if isinstance(designs, Picked) else designs
 
 
 def load_study(path: StrPath | StudyPlace) -> StoredStudy:
-    """The study in a database.
+    """Return the study in a database.
 
     Args:
         path: the database that ``run`` made: a file, or a server's address as text. To read a study file, use
@@ -289,27 +277,14 @@ def load_study(path: StrPath | StudyPlace) -> StoredStudy:
 
 
 def as_place(given: StrPath | StudyPlace, what: str = "path", *, allowed: str = "text or a path") -> StudyPlace:
-    """Where a study stands, from text that is a server's address, else from text or a path.
-
-    Raises:
-        InputError: it is neither.
-    """
+    """Return where a study stands, from text that is a server's address, else from text or a path."""
     if isinstance(given, StudyPlace) and not isinstance(given, Path):
         return given
     return place_of(given) if isinstance(given, str) and is_address(given) else as_path(given, what, allowed=allowed)
 
 
 def as_path(given: StrPath, what: str = "path", *, allowed: str = "text or a path") -> Path:
-    """A path from text or a path.
-
-    Args:
-        given: the path.
-        what: the argument that it is, for a message.
-        allowed: what may be given there.
-
-    Raises:
-        InputError: it is neither.
-    """
+    """Return a path from text or a path; else raise ``InputError``, in which ``what`` is ``allowed``."""
     try:
         path = Path(given)
     except TypeError:
@@ -329,27 +304,23 @@ def _ways(
     weights: Sequence[float] | None,
     compromise: Sequence[float] | None,
     nearest: Mapping[str, float] | None,
-) -> list[Chooser]:
-    """The ways to choose that are asked for.
-
-    Raises:
-        SelectionError: more than one, or an unknown one.
-    """
-    ways: list[Chooser] = []
+) -> list[selectors.Chooser]:
+    """Return the ways to choose that are asked for; more than one, or an unknown one, is a ``SelectionError``."""
+    ways: list[selectors.Chooser] = []
     if by is not None:
         if not isinstance(by, str) or by not in ("knee", "tradeoff"):
             raise SelectionError(complaint("by", by, "'knee' or 'tradeoff'", "correct it, or use another argument"))
-        ways.append(Knee() if by == "knee" else Tradeoff())
+        ways.append(selectors.Knee() if by == "knee" else selectors.Tradeoff())
     if trial is not None:
-        ways.append(Trial(number=trial_of(trial)))
+        ways.append(selectors.Trial(number=trial_of(trial)))
     if weights is not None:
-        ways.append(Weights(values=numbers_of("weights", weights)))
+        ways.append(selectors.Weights(values=numbers_of("weights", weights)))
     if compromise is not None:
-        ways.append(Compromise(values=numbers_of("compromise", compromise)))
+        ways.append(selectors.Compromise(values=numbers_of("compromise", compromise)))
     if nearest is not None:
         if not (wish := _known("nearest", nearest)):
             raise SelectionError("nearest: names no measure; give one, such as {'height_m': 1.0}")
-        ways.append(Nearest(wish=wish))
+        ways.append(selectors.Nearest(wish=wish))
     if len(ways) > 1:
         raise SelectionError(f"ways to choose = {len(ways)}: must be at most 1, with any conditions; drop the others")
     return ways
@@ -360,30 +331,25 @@ def _conditions(
     max_energy_j: float | None,
     at_least: Mapping[str, float] | None,
     at_most: Mapping[str, float] | None,
-) -> tuple[Condition | MaxEnergy, ...]:
-    found: list[Condition | MaxEnergy] = []
+) -> tuple[selectors.Condition | selectors.MaxEnergy, ...]:
+    found: list[selectors.Condition | selectors.MaxEnergy] = []
     if min_height_m is not None:
         least = number_of("min_height_m", min_height_m)
-        found.append(Condition(name="height_m", side="min", value=least, asked="min_height_m"))
+        found.append(selectors.Condition(name="height_m", side="min", value=least, asked="min_height_m"))
     if max_energy_j is not None:
-        found.append(MaxEnergy(energy_j=number_of("max_energy_j", max_energy_j)))
+        found.append(selectors.MaxEnergy(energy_j=number_of("max_energy_j", max_energy_j)))
     for name, value in _known("at_least", {} if at_least is None else at_least).items():
-        found.append(Condition(name=name, side="min", value=value))
+        found.append(selectors.Condition(name=name, side="min", value=value))
     for name, value in _known("at_most", {} if at_most is None else at_most).items():
-        found.append(Condition(name=name, side="max", value=value))
+        found.append(selectors.Condition(name=name, side="max", value=value))
     return tuple(found)
 
 
 def _known(what: str, values: Any) -> dict[str, float]:
-    """Numbers of known measures and variables.
-
-    Raises:
-        InputError: no mapping, or a value that is no number.
-        SelectionError: an unknown name.
-    """
+    """Return numbers of measures and variables; raise ``InputError``, or ``SelectionError`` for an unknown name."""
     numbers = table_of(what, values)
     for name in numbers:
-        if name not in CONDITION_NAMES and not is_own(name):
-            cure = near_measures(name, CONDITION_NAMES)
+        if name not in selectors.CONDITION_NAMES and not is_own(name):
+            cure = near_measures(name, selectors.CONDITION_NAMES)
             raise SelectionError(f"{what} = {name!r}: must be a measure or a variable; {cure}")
     return numbers

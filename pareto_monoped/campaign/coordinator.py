@@ -17,16 +17,11 @@ from pareto_monoped.errors import ParetoMonopedError
 from pareto_monoped.storage.lock import holder
 from pareto_monoped.study.session import Interrupt
 
-MOST_DEATHS = 2
-"""A study whose process was killed so often is given up: our own choice. Once may be chance, such as a full memory."""
-WORTH_S = 10.0
-"""Time left above which a study is stopped and continued with more threads: our own choice, ten times what it takes."""
+MOST_DEATHS = 2  #: Deaths of its process after which a study is given up: one may be chance. Our own choice.
+WORTH_S = 10.0  #: Time left that is worth a restart with more threads: ten times what that takes. Our own choice.
 _LISTEN_S = 0.1
-_SAME_S = 30.0
-"""Within which the same line about scheduler or workers is of the same event. Our own choice: studies hear of a worker
-that was killed within a second of each other, and of one that hangs once they have waited for it."""
-_HELD_S = 3.0
-"""How long to wait for the workers of a coordinator that was killed a moment ago: our own choice."""
+_SAME_S = 30.0  #: Time within which equal lines about scheduler or workers mean one event. Our own choice.
+_HELD_S = 3.0  #: How long to wait for the workers of a coordinator that was killed a moment ago: our own choice.
 
 
 @dataclass(slots=True, kw_only=True)
@@ -35,28 +30,22 @@ class Standing:
 
     place: Place
     state: State
-    evaluations: int
-    """Number of trials stored; there shall be ``budget``."""
+    evaluations: int  #: Number of trials stored; there shall be ``budget``.
     budget: int
     hypervolume: float
     hypervolume_unit: str
-    new_evaluations: int = 0
-    """Trials stored since the campaign was started."""
+    new_evaluations: int = 0  #: Trials stored since the campaign was started.
     per_second: float = 0.0
     seconds_left: float | None = None
     threads: int = 0
-    seconds: float = 0.0
-    """Running time that is stored, over all sessions."""
-    front: int = 0
-    """Number of designs on the front."""
-    reason: str = ""
-    """Why it failed."""
-    deaths: int = 0
-    """How often its process was killed."""
+    seconds: float = 0.0  #: Running time that is stored, over all sessions.
+    front: int = 0  #: Number of designs on the front.
+    reason: str = ""  #: Why it failed.
+    deaths: int = 0  #: How often its process was killed.
 
     @classmethod
     def of(cls, place: Place, stored: Stored) -> "Standing":
-        """The standing of a study that no worker has yet."""
+        """Return the standing of a study that no worker has yet."""
         known = {each.name: getattr(stored, each.name) for each in fields(stored) if each.name != "summary"}
         return cls(place=place, **known)
 
@@ -71,8 +60,7 @@ class Standing:
         return "auditing" if self.state == "running" and self.evaluations >= self.budget else self.state
 
 
-Changed = Callable[[Standing], object]
-"""Called when a study's standing has changed."""
+Changed = Callable[[Standing], object]  #: Called when a study's standing has changed.
 
 
 def run_campaign(
@@ -83,17 +71,12 @@ def run_campaign(
     changed: Changed,
     notify: Callable[[str], None],
 ) -> bool:
-    """Run every study that has not ended; returns whether all could, rather than being interrupted.
+    """Run every study that has not ended; return whether all could, rather than being interrupted.
 
-    A study that fails says so in its standing and does not stop the others. Results do not depend on ``cores``.
-
-    Args:
-        standings: of the studies, see ``standings_of``; they are brought up to date.
-        cores: threads of all studies together, or with ``scheduler`` how many run at a time; None: as many as this
-            machine has cores, or the scheduler's workers threads.
-        scheduler: address of a Dask scheduler whose workers simulate.
-        changed: called when a study has begun, stored a generation, or ended.
-        notify: called with a line for the user.
+    A study that fails says so in its standing and does not stop the others; ``standings`` are brought up to date, and
+    ``changed`` is called when one has begun, stored a generation, or ended. ``cores`` are the threads of all studies
+    together, or with ``scheduler`` (the address of a Dask scheduler) how many studies run at a time; None means all of
+    this machine or of the scheduler's workers. Results do not depend on it.
 
     Raises:
         InputError: the address is none, or Dask is not installed.
@@ -109,7 +92,7 @@ def run_campaign(
 
 
 def standings_of(places: Sequence[Place]) -> list[Standing]:
-    """How the studies of a campaign stand according to their databases."""
+    """Return how the studies of a campaign stand according to their databases."""
     return [Standing.of(place, stored_state(place)) for place in places]
 
 
@@ -121,8 +104,7 @@ class _Job:
     worker: Processes
     before: int
     seat: int
-    again_with: int | None = None
-    """Number of threads with which it goes on once it has stopped; None: it is not to stop."""
+    again_with: int | None = None  #: Number of threads of its next run if it is to stop for that; else None.
 
 
 @dataclass(slots=True)
@@ -137,8 +119,7 @@ class _Coordinator:
     news: "queue.SimpleQueue[tuple[Processes, object]]" = field(default_factory=queue.SimpleQueue)
     """What workers say, each with its worker, and their results as futures."""
     slots: int = 1
-    told_s: dict[str, float] = field(default_factory=dict)
-    """When a line about scheduler or workers was told."""
+    told_s: dict[str, float] = field(default_factory=dict)  #: When a line about scheduler or workers was told.
 
     def run(self, standings: Sequence[Standing]) -> bool:
         """Run all of them; returns whether none was left out because of an interrupt."""
@@ -186,7 +167,7 @@ class _Coordinator:
     def _widen(self) -> None:
         """Give idle cores to a study that still takes long: it stops, and goes on with twice as many threads or more.
 
-        Results do not depend on the number of threads. One at a time, so that no core is promised twice.
+        Only one study changes at a time, so that no core is promised twice.
         """
         if self.scheduler or self.waiting or not self.jobs or any(job.again_with for job in self.jobs):
             return
@@ -293,10 +274,7 @@ class _Coordinator:
 
 
 def _wait_for_release(standing: Standing) -> None:
-    """Wait until the worker of a coordinator that was killed a moment ago has ended.
-
-    If another program holds the study for longer, running it says so.
-    """
+    """Wait until the worker of a coordinator that was killed a moment ago has ended; running reports a longer hold."""
     end_s = time.monotonic() + _HELD_S
     while holder(standing.place.db) is not None and time.monotonic() < end_s:
         time.sleep(0.05)

@@ -83,11 +83,8 @@ def held(folder: Path) -> Iterator[None]:
 def places_of(campaign: Campaign, folder: Path) -> list[Place]:
     """Return the database of each study of a campaign, which has the study's name.
 
-    Where that does not exist, but another database in the folder that no name leads to has the same settings, it is
-    that one: the grid has got another axis since.
-
-    Raises:
-        StudyError: some databases of these names have other settings.
+    If it does not exist, but another database in the folder that no name leads to has the same settings, that is used:
+    the grid has got another axis since. Other settings in databases of these names are a ``StudyError``.
     """
     own = {member.name: folder / f"{member.name}.db" for member in campaign.members}
     others = _others(folder, own.values())
@@ -145,9 +142,7 @@ def stored_state(place: Place) -> Stored:
 
 
 def is_ended(place: Place, stored: Stored) -> bool:
-    """Return whether running a study again would do nothing: it has ended as its file says, and no file of the user's
-    may have changed since, such as a motor or a calibration.
-    """
+    """Return whether a study has ended as its file says, with no motor or calibration file of the user's."""
     if stored.summary is None or stored.state not in ("finished", "failed"):
         return False
     names = (*place.study.motors, place.study.calibration)

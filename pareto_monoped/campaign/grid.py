@@ -11,20 +11,18 @@ from math import prod
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from pareto_monoped.config import checked, read_toml
+from pareto_monoped.config import Strict, checked, read_toml
 from pareto_monoped.definition.study import Study, filled
 from pareto_monoped.definition.study_file import file_values, with_objectives, with_paths
 from pareto_monoped.errors import StudyError, complaint
 
-LONGEST_PART, LONGEST = 48, 180
-"""Letters of one axis in a name, and of a name. Our own choice: file systems take 255, and ``.db-journal`` follows."""
+LONGEST_PART, LONGEST = 48, 180  #: Letters of one axis in a name, and of a name: file systems take 255. Our own choice.
 _UNUSUAL = re.compile(r"[^A-Za-z0-9._+-]+")
 _BEFORE = {"seeds": "seed", "cases": "case-", "evaluations": "jumps", "hip_motors": "hip-", "knee_motors": "knee-"}
 """Axis -> what stands before a value that says too little alone."""
-MOST_STUDIES = 1000
-"""Our own choice: a thousand studies of 8,000 jumps take a day on 16 cores; more is a typing error."""
+MOST_STUDIES = 1000  #: Our own choice: a thousand studies of 8,000 jumps take a day on 16 cores.
 KEYS = {
     "motors": "motor",
     "hip_motors": "hip_motor",
@@ -33,10 +31,9 @@ KEYS = {
     "cases": "case",
     "algorithms": "algorithm",
     "seeds": "seed",
-}
-"""Axis -> key of a study file, where it is not the same word."""
+}  #: Axis -> key of a study file, where it is not the same word.
 _TABLES = ("variables", "constraints")
-"""Axes whose values are added to the base study's table; those of the others take the place of its value."""
+"""Axes whose values are added to the base study's table instead of replacing it."""
 
 Values = Annotated[list[Any], Field(min_length=1)]
 
@@ -105,10 +102,8 @@ def _digest(value: Any) -> str:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _File:
+class _File(Strict):
     """Keys of a campaign file; the study and the axes are checked separately."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: Annotated[str, Field(min_length=1, max_length=200)]
     description: Annotated[str, Field(max_length=2000)] = ""
@@ -117,10 +112,8 @@ class _File:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Axes:
+class _Axes(Strict):
     """The axes that a campaign may have, each a list of values for one key of a study file."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     motors: Values | None = None
     hip_motors: Values | None = None
@@ -167,8 +160,7 @@ def load_campaign(path: Path) -> Campaign:
     Raises:
         StudyError: no readable TOML, an unknown key, a wrong type, a value named twice, too many studies, or a
             combination that no study file could have.
-        MotorError: an unknown name of a motor.
-        CalibrationError: an unknown name of a calibration.
+        MotorError, CalibrationError: an unknown name.
     """
     source = f"campaign file {str(path)!r}"
     raw = read_toml(path, what="campaign file", error=StudyError)

@@ -1,7 +1,4 @@
-"""The report of a campaign: one self-contained page in the looks of the report of a study.
-
-Every text from a file or a database is escaped here.
-"""
+"""The report of a campaign: one self-contained page, in which every text from a file or a database is escaped."""
 
 import json
 import math
@@ -44,13 +41,10 @@ _SINGULAR = {
     "algorithms": "algorithm",
     "seeds": "seed",
     "evaluations": "number of jumps",
-}
-"""Axis -> what a value of it is called; others by their own name."""
+}  #: Axis -> what a value of it is called; others by their own name.
 _STRIP_PX, _EDGE_PX = 130.0, 6.0
-SCRIPTS = ("dom", "scales", "marks", "plots", "chart")
-"""Scripts of the report of a study that this page has, too; its own one follows."""
-MOST_CURVES = 8
-"""Groups that the charts show at first. Our own choice: more bands, one over the other, cannot be told apart."""
+SCRIPTS = ("dom", "scales", "marks", "plots", "chart")  #: Scripts from the report of a study, before the page's own.
+MOST_CURVES = 8  #: Groups that the charts show at first: more overlapping bands cannot be told apart.
 
 
 def section_tables(section: Section) -> str:
@@ -227,11 +221,10 @@ def _summary(results: Sequence[Result], sections: Sequence[Section]) -> str:
     else:
         time = f"{seconds / 60.0:.0f} minutes" if seconds < 7200.0 else f"{seconds / 3600.0:.1f} hours"
     words = f"{finished} of {len(results)} studies are finished: {jumps:,} jumps in {time} of running time."
-    several = (
-        " Studies with other objectives or another calibration cannot be compared; they have sections of their own."
-    )
     if len(sections) > 1:
-        words += several
+        words += (
+            " Studies with other objectives or another calibration cannot be compared; they have sections of their own."
+        )
     return words
 
 

@@ -8,15 +8,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.campaign.folder import Place, Stored, stored_state
 from pareto_monoped.campaign.grid import Campaign
+from pareto_monoped.design import Floats
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.pareto.trade_offs import knee
 from pareto_monoped.storage.reader import read_study
-
-Floats = NDArray[np.float64]
 
 LEVELS_M = (0.7, 0.8, 0.9)  #: Heights at which tables say what they cost: those of the report of a study.
 LOW, HIGH = 0.1, 0.9  #: Ends of the bands: what a tenth of the studies and nine tenths of them reach.
@@ -92,10 +90,8 @@ def levels_of(objectives: Objectives) -> tuple[float, ...]:
 def results_of(places: Sequence[Place], failed: Mapping[str, str] | None = None) -> list[Result]:
     """Return what each study found; those that have not begun or cannot be read found nothing.
 
-    ``failed`` has the reason, by name, of studies that could not be run just now, which their databases do not say.
-
-    Raises:
-        DatabaseError: a database does not match its running hash.
+    ``failed`` has, by name, why studies could not be run just now. A database that does not match its running hash is a
+    ``DatabaseError``.
     """
     return [_result(place, (failed or {}).get(place.name)) for place in places]
 
@@ -186,9 +182,9 @@ def _grouped(results: Sequence[Result], axes: Sequence[str]) -> tuple[Group, ...
 
 
 def spread_of(values: Sequence[float] | Floats) -> Spread:
-    """Return median and band as order statistics, of which no value lies between two; NaN is the greatest.
+    """Return median and band as order statistics (the lower median), for which NaN is the greatest value.
 
-    Of an even number the median is the lower of the middle two, of fewer than ten values the band has all.
+    Of fewer than ten values the band has all.
     """
     middle, low, high = quantiles(np.asarray(values, dtype=np.float64)[:, None])[:, 0]
     return Spread(middle=float(middle), low=float(low), high=float(high))
@@ -246,10 +242,9 @@ def relative(section: Section) -> dict[str, float]:
 
 
 def csv_text(campaign: Campaign, results: Sequence[Result]) -> str:
-    """Return the table as CSV; what a study does not have is empty.
+    """Return the table as CSV, with an empty cell for what a study does not have.
 
-    Columns: name and database of the study, its value on each axis that varies, settings, how far it is, and what it
-    found: ``knee_NAME`` are the objectives of the knee, ``best_NAME`` is the best value of the first objective,
+    ``knee_NAME`` are the objectives of the knee, ``best_NAME`` is the best value of the first objective,
     ``NAME_at_0_8_m`` the best second one among the designs that reach 0.8 m.
     """
     rows = [_row(campaign, result) for result in results]

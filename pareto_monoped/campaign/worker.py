@@ -1,7 +1,4 @@
-"""What a process of a campaign does: runs a study, and says how it goes. It ends with its coordinator.
-
-Everything that a study has acknowledged is on disk by then.
-"""
+"""The process of a campaign that runs a study and reports its progress, and ends with its coordinator."""
 
 import warnings
 from contextlib import nullcontext
@@ -28,8 +25,7 @@ class Noted:
     """A line of a study for the user."""
 
     line: str
-    shared: bool = False
-    """Whether it is about scheduler and workers, of which every study hears the same."""
+    shared: bool = False  #: Whether it is about scheduler and workers, of which every study hears the same.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,17 +40,10 @@ class Ended:
 
 
 def run_study(study: Study, db: Path, threads: int, scheduler: str | None, seat: int) -> Ended:
-    """Run a study or continue it; it can stop after each generation.
+    """Run a study or continue it, by threads or the workers of a scheduler; it can stop after each generation.
 
-    Args:
-        study: the definition.
-        db: its database.
-        threads: that simulate.
-        scheduler: address of a Dask scheduler whose workers simulate in their place; None: they do.
-        seat: tells studies that run side by side apart, see ``compute.crew.Crew``.
-
-    Raises:
-        ParetoMonopedError: see ``study.run.run``.
+    ``seat`` tells studies that run side by side apart, see ``compute.crew.Crew``; errors are those of
+    ``study.run.run``.
     """
     from pareto_monoped.analysis.remarks import remarks
     from pareto_monoped.jump.peers import cluster
@@ -71,12 +60,7 @@ def run_study(study: Study, db: Path, threads: int, scheduler: str | None, seat:
     warnings.simplefilter("ignore")  # they are for developers, and would be written across the table
     with nullcontext() if scheduler is None else cluster(scheduler, tell=tell, seat=seat) as executor:
         done = run(
-            study,
-            db,
-            workers=threads,
-            executor=executor,
-            progress=advance,
-            notify=lambda line: say(Noted(line=line)),
+            study, db, workers=threads, executor=executor, progress=advance, notify=lambda line: say(Noted(line=line))
         )
     found = {name: getattr(done, name) for name in Ended.__dataclass_fields__ if name != "remarks"}
     return Ended(**found, remarks=tuple(remarks(done.data)))

@@ -14,28 +14,13 @@ import click
 
 from pareto_monoped import __version__
 
+#: Command -> module of this package that defines it, in the order of use.
 _COMMANDS = {
-    "pareto": "pareto",
-    "init": "pareto",
-    "actuators": "actuators",
-    "simulate": "jumps",
-    "table1": "jumps",
-    "run": "studies",
-    "resume": "studies",
-    "status": "studies",
-    "campaign": "campaign",
-    "verify": "stored",
-    "repair": "stored",
-    "trials": "stored",
-    "front": "fronts",
-    "pick": "fronts",
-    "robust": "robustness",
-    "sensitivity": "robustness",
-    "export": "exports",
-    "report": "stored",
-    "dashboard": "stored",
-}
-"""Command -> module of this package that defines it, in the order of use."""
+    "pareto": "pareto", "init": "pareto", "actuators": "actuators", "simulate": "jumps", "table1": "jumps",
+    "run": "studies", "resume": "studies", "status": "studies", "campaign": "campaign", "verify": "stored",
+    "repair": "stored", "trials": "stored", "front": "fronts", "pick": "fronts", "robust": "robustness",
+    "sensitivity": "robustness", "export": "exports", "report": "stored", "dashboard": "stored",
+}  # fmt: skip
 
 
 class _Commands(click.Group):
@@ -56,7 +41,7 @@ class _Commands(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """The command, or an error that names those with a similar name."""
+        """Return the command, or an error that names those with a similar name."""
         if args and args[0] not in _COMMANDS and not args[0].startswith("-"):
             near = difflib.get_close_matches(args[0], _COMMANDS, n=2)
             cure = f"did you mean {' or '.join(map(repr, near))}?" if near else f"must be one of {', '.join(_COMMANDS)}"
@@ -106,9 +91,7 @@ def cli(ctx: click.Context) -> None:
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line and exit with its code: 0, 1 (failure), 2 (bad input) or 130 (interrupt).
 
-    Args:
-        arguments: the words of the command; None for those of this process, which then belongs to the command: the
-            signals that end it and its standard streams are taken care of.
+    Without ``arguments``, the process belongs to the command: its signals and standard streams are taken care of.
     """
     if arguments is not None:
         sys.exit(_run(arguments))

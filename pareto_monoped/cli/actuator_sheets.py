@@ -1,7 +1,4 @@
-"""The rating of a gear set as a gear calculation sheet: loads and their factors by mesh, stresses by gear.
-
-How ``actuators --ratio`` prints losses, stiffness, bushes and bearings.
-"""
+"""How ``actuators --ratio`` prints a gear calculation sheet, losses, stiffness, bushes and bearings."""
 
 import textwrap
 from collections.abc import Callable, Iterable
@@ -142,13 +139,12 @@ BEARING_COLUMNS: tuple[tuple[str, Literal["left", "right"]], ...] = (
     ("L10\nh", "right"),
     ("s0\npeak", "right"),
     ("s0\nover", "right"),
-)
-"""Heading and alignment of each column of ``bearing_rows``."""
+)  #: Heading and alignment of each column of ``bearing_rows``.
 _LONG_H = 1e6
 
 
 def service_lines(sheet: "ServiceSheet", settings: "ActuatorSettings") -> list[tuple[str, str]]:
-    """Name and value of one line each."""
+    """Return name and value of one line each."""
     losses, stiffness = sheet.losses, sheet.stiffness
     sources = [
         f"{name} {100.0 * value:.1f}"
@@ -202,7 +198,7 @@ def _bush_lines(sheet: "ServiceSheet", settings: "ActuatorSettings") -> list[tup
 
 
 def bearing_rows(sheet: "ServiceSheet") -> list[tuple[str, ...]]:
-    """One row for each bearing, under ``BEARING_COLUMNS``."""
+    """Return one row for each bearing, under ``BEARING_COLUMNS``."""
     rows: list[tuple[str, ...]] = []
     for found in sheet.bearings:
         rated = found.bearing
@@ -223,7 +219,7 @@ def bearing_rows(sheet: "ServiceSheet") -> list[tuple[str, ...]]:
 
 
 def duty_lines(sheet: "ServiceSheet", settings: "ActuatorSettings", service: "ServiceData") -> list[str]:
-    """The duty that the lives belong to, and the bearings and bushes that it asks too much of."""
+    """Return the duty that the lives belong to, and the bearings and bushes that it asks too much of."""
     duty, overload = settings.parts.duty, settings.parts.rating.overload_factor
     turned = duty.reversed or (False,) * len(duty.torque_shares)
     *first, last = (

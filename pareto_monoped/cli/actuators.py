@@ -149,7 +149,7 @@ def _write_csv(path: Path, rows: list[dict[str, Any]], rules: RuleSet, *, force:
 
 
 def _columns(rules: RuleSet) -> list[str]:
-    """Keys of a row, of which a motor without any gearbox has none: those of the default motor's map."""
+    """Return keys of a row, of which a motor without any gearbox has none: those of the default motor's map."""
     from pareto_monoped.actuator.explain import summary
     from pareto_monoped.actuator.search import map_for
     from pareto_monoped.actuator.service.sheet import service_sheet
@@ -161,7 +161,7 @@ def _columns(rules: RuleSet) -> list[str]:
 
 
 def _table(*columns: tuple[str, Literal["left", "right"]], no_wrap: str) -> "Table":
-    """A table of these headings and alignments; the column ``no_wrap`` keeps its width."""
+    """Return a table of these headings and alignments; the column ``no_wrap`` keeps its width."""
     from rich import box
     from rich.table import Table
 
@@ -172,7 +172,6 @@ def _table(*columns: tuple[str, Literal["left", "right"]], no_wrap: str) -> "Tab
 
 
 def _print_map(actuator_map: "ActuatorMap") -> None:
-
     from pareto_monoped.actuator.explain import gaps, motor_facts
     from pareto_monoped.actuator.ratiomap import either
 
@@ -219,7 +218,7 @@ def _print_map(actuator_map: "ActuatorMap") -> None:
 
 
 def _shift_lines(gears: "GearSet") -> list[tuple[str, str]]:
-    """Profile shifts in modules, positive outwards, with what they do to the mesh; none where there are none."""
+    """Return profile shifts in modules, positive outwards, with what they do to the mesh; none where there are none."""
     if not gears.is_shifted:
         return []
     angle = math.degrees(float(gears.working_angle_rad))
@@ -245,7 +244,6 @@ def _last_cells(actuator: "Actuator") -> tuple[str, ...]:
 
 
 def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "ServiceSheet") -> None:
-
     from pareto_monoped.actuator.assumptions import default_service
     from pareto_monoped.actuator.explain import details
     from pareto_monoped.cli.actuator_sheets import (
@@ -291,7 +289,7 @@ def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "Servi
 
 
 def _torque_lines(actuator: "Actuator") -> list[tuple[str, str]]:
-    """The torques with their basis and how long they may be held; all before losses."""
+    """Return the torques with their basis and how long they may be held; all before losses."""
     from pareto_monoped.actuator.explain import CONTINUOUS_BASIS, how_long, peak_basis
 
     motor = actuator.motor
@@ -332,7 +330,7 @@ def _parts_table(parts: list[dict[str, Any]], mass_kg: float) -> "Table":
 
 
 def _rivals(chosen_family: str, known: dict[str, Any]) -> list[str]:
-    """One line each: the runner-up, the best gearbox of the other families, and what keeps lighter ones out."""
+    """Return one line each: the runner-up, the best gearbox of the other families, and what keeps lighter ones out."""
     lines = []
     second = known["runner_up"]
     if second:

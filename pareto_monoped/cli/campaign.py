@@ -1,7 +1,4 @@
-"""Command ``campaign``: a grid of studies, run side by side, continued as a whole, compared on one page.
-
-How a campaign's studies stand, on a terminal, in a pipe, or as lines of JSON.
-"""
+"""Command ``campaign``, and how its studies stand: on a terminal, in a pipe, or as lines of JSON."""
 
 import json
 import time
@@ -36,20 +33,8 @@ if TYPE_CHECKING:
 )
 @scheduler_option
 @click.option("--status", is_flag=True, help="Run nothing: only show how the studies stand.")
-@click.option(
-    "--report",
-    "page",
-    type=HTML_FILE,
-    metavar="FILE.html",
-    help="Write a page that compares them.",
-)
-@click.option(
-    "--csv",
-    "table",
-    type=CSV_FILE,
-    metavar="FILE.csv",
-    help="Write a table with a row per study.",
-)
+@click.option("--report", "page", type=HTML_FILE, metavar="FILE.html", help="Write a page that compares them.")
+@click.option("--csv", "table", type=CSV_FILE, metavar="FILE.csv", help="Write a table with a row per study.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON: a line per stored generation and per study.")
 @force_option
 def campaign(
@@ -120,7 +105,6 @@ def _tell(standings: "Sequence[Standing]", folder: Path, places: "Sequence[Place
 def _write(
     grid: "Campaign", standings: "Sequence[Standing]", page: Path | None, table: Path | None, force: bool
 ) -> None:
-    """Write the outputs that are asked for."""
     from pareto_monoped.files import write_text
 
     if page is None and table is None:
@@ -142,18 +126,16 @@ def _write(
 
 
 _SECONDS_BETWEEN_LINES = 5.0
-_NAME_WIDTH = 24
-"""Letters of a study's name in 80 columns; longer ones lose their middle, because their ends tell them apart."""
-_AROUND = 5
-"""Lines of the live table that are no studies: what stands above them, their count below, and the prompt."""
+_NAME_WIDTH = 24  #: Letters of a study's name in 80 columns; longer ones lose their middle, not their ends.
+_AROUND = 5  #: Lines of the live table that are no studies: what stands above them, their count below, and the prompt.
 
 Reports = tuple[Callable[["Standing"], object], Callable[[str], None]]
-"""What hears of a study whose standing has changed, and of a line for the user."""
+"""Called with a changed standing, and with a line."""
 
 
 @contextmanager
 def reports(standings: "Sequence[Standing]", *, as_json: bool) -> Iterator[Reports]:
-    """What shows the progress of a campaign: a table on a terminal, else a line every few seconds, both on stderr.
+    """Show the progress of a campaign on stderr, as a table on a terminal, else as a line every few seconds.
 
     As JSON it is a line on stdout for every stored generation and for every study that ends.
     """
@@ -183,17 +165,17 @@ def print_table(standings: "Sequence[Standing]") -> None:
 
 
 def studies(count: int) -> str:
-    """So many studies, in words."""
+    """Return so many studies, in words."""
     return "1 study" if count == 1 else f"{count} studies"
 
 
 def counted(standings: "Sequence[Standing]") -> str:
-    """How many studies are in which state."""
+    """Return how many studies are in which state."""
     return ", ".join(f"{count} {state}" for state, count in Counter(one.doing for one in standings).items())
 
 
 def shortened(text: str, width: int) -> str:
-    """A name of at most so many letters, without its middle if it has more."""
+    """Return a name of at most so many letters, without its middle if it has more."""
     text = name(text)
     if len(text) <= width:
         return text
@@ -202,7 +184,7 @@ def shortened(text: str, width: int) -> str:
 
 
 def as_values(standing: "Standing") -> dict[str, Any]:
-    """A standing as JSON values."""
+    """Return a standing as JSON values."""
     return {
         "study": standing.name,
         "database": str(standing.place.db),
@@ -263,7 +245,7 @@ def _live(standings: "Sequence[Standing]") -> Iterator[Reports]:
 
 
 def _rows(standings: "Sequence[Standing]", height: int) -> list[Any]:
-    """The table and, if not all studies fit into it, what the others are at."""
+    """Return the table and, if not all studies fit into it, what the others are at."""
     from rich.text import Text
 
     room = max(height - _AROUND, 3)
@@ -276,14 +258,14 @@ def _rows(standings: "Sequence[Standing]", height: int) -> list[Any]:
 
 
 def _of_interest(standings: "Sequence[Standing]", room: int) -> "list[Standing]":
-    """So many studies: those at work, then failed ones, the next ones, and those that have ended."""
+    """Return so many studies: those at work, then failed ones, the next ones, and those that have ended."""
     ranks = {"running": 0, "failed": 1, "unfinished": 2, "waiting": 2, "finished": 3}
     places = sorted(range(len(standings)), key=lambda k: (ranks[standings[k].state], k))
     return [standings[k] for k in sorted(places[:room])]
 
 
 def _titled(*numbers: str) -> "Table":
-    """A table without rows: studies, columns of numbers, and how each study stands."""
+    """Return a table without rows: studies, columns of numbers, and how each study stands."""
     from rich import box
     from rich.table import Table
 
@@ -318,14 +300,13 @@ def _volume(standing: "Standing") -> str:
 
 
 def clock(seconds: float) -> str:
-    """A time as minutes and seconds, or as hours, minutes and seconds."""
+    """Return a time as minutes and seconds, or as hours, minutes and seconds."""
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
 
 
 def _all(standings: "Sequence[Standing]", seconds: float) -> str:
-    """The campaign in one line."""
     ended = sum(one.state in ("finished", "failed") for one in standings)
     done, budget = (sum(getattr(one, key) for one in standings) for key in ("evaluations", "budget"))
     left = sum(one.budget - one.evaluations for one in standings if one.state != "failed")

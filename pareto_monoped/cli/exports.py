@@ -9,16 +9,6 @@ from typing import TYPE_CHECKING
 import click
 
 from pareto_monoped.cli import options
-from pareto_monoped.cli.options import (
-    DATABASE,
-    Local,
-    Where,
-    chosen_motors,
-    executor_at,
-    motor_options,
-    scheduler_option,
-    where,
-)
 from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.cli.terminal import echo, new_console, note, wrapped
 from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES, RULE_SETS, RuleSet
@@ -32,17 +22,14 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("db", required=False, type=DATABASE)
+@click.argument("db", required=False, type=options.DATABASE)
 @selector_options
-@click.option("-o", "--output", metavar="DIR", required=True, type=Local(), help="Folder for the export.")
+@click.option("-o", "--output", metavar="DIR", required=True, type=options.Local(), help="Folder for the export.")
 @click.option("--case", type=click.Choice(list(PAPER_CASES)), help="A row of the paper's Table I, instead of DB.")
-@motor_options("With --case: ")
+@options.motor_options("With --case: ")
 @click.option("--rules", type=click.Choice(RULE_SETS), help=f"With --case: gearbox rules.  [default: {DEFAULT_RULES}]")
 @click.option(
-    "--record",
-    type=Local(),
-    metavar="FILE.json",
-    help="Repeat the export that has this design.json.",
+    "--record", type=options.Local(), metavar="FILE.json", help="Repeat the export that has this design.json."
 )
 @click.option("--front", "whole_front", is_flag=True, help="Export all designs of the front to DIR/trial_N.")
 @click.option(
@@ -51,7 +38,7 @@ if TYPE_CHECKING:
 @click.option(
     "--workers", type=click.IntRange(1, 1024), metavar="N", help="With --front: processes.  [default: all cores]"
 )
-@scheduler_option
+@options.scheduler_option
 @click.option(
     "--formats",
     metavar="A,B",
@@ -93,7 +80,7 @@ def export(
     so that --record needs neither the study nor its files.
     """
     _refuse_mixed_sources(db, selector, case, record, whole_front, hip_deg, knee_deg, no_strength)
-    place = where(None, scheduler, workers)
+    place = options.where(None, scheduler, workers)
     if scheduler is not None and not whole_front:
         raise click.UsageError("--scheduler goes with --front only, for which it makes many exports; drop it")
     given = {"--rules": rules, "--motor": motor, "--hip-motor": hip_motor, "--knee-motor": knee_motor}
@@ -122,7 +109,7 @@ def export(
         if record is not None:
             _one(_without(dropped, record_job(record, folder=output, formats=names, force=force, note=_note)))
         elif case is not None:
-            hip, knee = chosen_motors(motor, hip_motor, knee_motor)
+            hip, knee = options.chosen_motors(motor, hip_motor, knee_motor)
             job = case_job(
                 case,
                 motor=hip,
@@ -190,7 +177,7 @@ def _refuse_mixed_sources(
 
 
 def _without(dropped: set[str], job: "Job") -> "Job":
-    """The same job without some formats, whatever formats it names."""
+    """Return the same job without some formats, whatever formats it names."""
     return replace(job, formats=tuple(name for name in job.formats if name not in dropped))
 
 
@@ -229,7 +216,7 @@ def _say_of_strength(jobs: "list[Job]") -> None:
         note(NO_STRENGTH)
 
 
-def _many(jobs: "list[Job]", workers: int, place: Where) -> None:
+def _many(jobs: "list[Job]", workers: int, place: options.Where) -> None:
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bar
 
@@ -249,7 +236,7 @@ def _many(jobs: "list[Job]", workers: int, place: Where) -> None:
             )
 
         try:
-            with executor_at(place, limits=EXPORT_LIMITS, extra="cad") as executor:
+            with options.executor_at(place, limits=EXPORT_LIMITS, extra="cad") as executor:
                 made = run_all(jobs, workers=workers, executor=executor, progress=show)
         except KeyboardInterrupt:
             bar.console.print("interrupted; the same command continues from here")
@@ -259,7 +246,7 @@ def _many(jobs: "list[Job]", workers: int, place: Where) -> None:
 
 
 def _duration(seconds: float) -> str:
-    """A time to wait, in words: ``50 s``, ``12 min`` or ``3 h 05 min``."""
+    """Return a time to wait, in words: ``50 s``, ``12 min`` or ``3 h 05 min``."""
     if seconds < 99.5:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60.0)

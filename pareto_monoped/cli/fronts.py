@@ -34,12 +34,11 @@ def shown_columns(study: "Study", used: "Sequence[Variable]", objectives: "Objec
     return ["trial", *objectives.names, *variables, *_motor_columns(study)]
 
 
-_MOTORS = ("motor", "hip_motor", "knee_motor")
-"""Columns with names of motors."""
+_MOTORS = ("motor", "hip_motor", "knee_motor")  #: Columns with names of motors.
 
 
 def _motor_columns(study: "Study") -> tuple[str, ...]:
-    """The columns that tell designs' motors apart: none where all have the same."""
+    """Return the columns that tell designs' motors apart: none where all have the same."""
     if len(study.kits) == 1:
         return ()
     return ("motor",) if study.motor is not None else ("hip_motor", "knee_motor")
@@ -119,12 +118,11 @@ def _say_why_empty(db: StudyPlace) -> None:
         note(why_no_front(data))
 
 
-_MANY = 100
-"""Designs of a table that is told how to be shorter: more than two screens. Our own choice."""
+_MANY = 100  #: Designs of a table that is told how to be shorter: more than two screens. Our own choice.
 
 
 def _spread(rows: "DataFrame", most: int | None) -> "DataFrame":
-    """At most ``most`` rows, evenly spread, with both ends; says how many are left out."""
+    """Return at most ``most`` rows, evenly spread, with both ends; says how many are left out."""
     if most is None or len(rows) <= most:
         return rows
     import numpy as np
@@ -146,7 +144,7 @@ def say_of_study(study: "Study", *, sealed: bool) -> None:
 
 
 def _objectives(given: str | None, data: "StudyData") -> "Objectives":
-    """The objectives that an option names, or the study's own."""
+    """Return the objectives that an option names, or the study's own."""
     from pareto_monoped.definition.goals import names_of, objectives_of
     from pareto_monoped.errors import SelectionError
 
@@ -160,7 +158,7 @@ def _objectives(given: str | None, data: "StudyData") -> "Objectives":
 
 
 def _decimals(entry: "Measure") -> int:
-    """Decimals in the stored unit: one more than reports show."""
+    """Return decimals in the stored unit: one more than reports show."""
     return entry.decimals + 1 + round(math.log10(entry.scale))
 
 
@@ -301,7 +299,7 @@ def pick(
 
 
 def _robust(db: StudyPlace) -> "tuple[StudyData, RobustTrials, DataFrame]":
-    """The study, its trials by what is stored of their robustness, and their front."""
+    """Return the study, its trials by what is stored of their robustness, and their front."""
     from pareto_monoped.analysis.robustness import robust_front, robust_trials
     from pareto_monoped.storage.extra_rows import read_robustness
     from pareto_monoped.storage.reader import read_study

@@ -12,18 +12,7 @@ from pareto_monoped.cli import options
 from pareto_monoped.cli.options import CSV_FILE, Local, chosen_motors, force_option, motor_options
 from pareto_monoped.cli.terminal import echo, new_console, note
 from pareto_monoped.cli.watching import require_what_shows, view_jump, write_films
-from pareto_monoped.design import (
-    CONTROL,
-    DEFAULT_RULES,
-    NAMES,
-    PAPER_CASES,
-    PAPER_MOTOR,
-    RULE_SETS,
-    VARIABLES,
-    Design,
-    RuleSet,
-    columns,
-)
+from pareto_monoped.design import DEFAULT_RULES, NAMES, PAPER_CASES, PAPER_MOTOR, RULE_SETS, VARIABLES, Design, RuleSet
 from pareto_monoped.errors import DesignError, SimulationError, complaint, unknown_name
 from pareto_monoped.jump.calibration_defaults import DEFAULT
 
@@ -34,8 +23,6 @@ if TYPE_CHECKING:
     from pareto_monoped.jump.table1 import Row
 
 _OUTPUT = Local(dir_okay=False)
-
-
 _VARIABLES = "\n".join(
     ["\b", "Design variables of --set, with their units and usual bounds:"]
     + [
@@ -160,12 +147,10 @@ _CURES = {
     "no_lift_off": "raise stiffness_n_per_m or the gear ratios, or lower damping_n_s_per_m",
     "timeout": "lower stiffness_n_per_m or rest_length_m",
     "diverged": "choose softer contact and stops or a smaller time step in the calibration, or smaller gains",
-}
-"""How a jump can fail -> what may help."""
+}  #: How a jump can fail -> what may help.
 
 
 def _design(case: str, changes: tuple[str, ...]) -> Design:
-    """The case with its changes."""
     numbers = {}
     for change in changes:
         name, equals, text = change.partition("=")
@@ -182,7 +167,7 @@ def _design(case: str, changes: tuple[str, ...]) -> Design:
 
 
 def _outside(design: Design) -> list[str]:
-    """What to note of values outside their bounds: a line for the paper's variables, and one for the others."""
+    """Return what to note of values outside their bounds: a line for the paper's variables, and one for the others."""
     found: dict[str, list[str]] = {}
     for variable in VARIABLES:
         value = getattr(design, variable.name)
@@ -194,12 +179,12 @@ def _outside(design: Design) -> list[str]:
 
 
 def _plain(value: float) -> float | None:
-    """The value as a JSON number; None, which is null in JSON, if it is not finite."""
+    """Return the value as a JSON number; None, which is null in JSON, if it is not finite."""
     return value if math.isfinite(value) else None
 
 
 def _motors(hip: str, knee: str) -> dict[str, str]:
-    """The motors as they were named: one for both joints, or one of each."""
+    """Return the motors as they were named: one for both joints, or one of each."""
     return {"motor": hip} if hip == knee else {"hip_motor": hip, "knee_motor": knee}
 
 
@@ -217,7 +202,7 @@ def _report(result: "JumpResult", motors: dict[str, str], maps: "JointMaps") -> 
 
 
 def _add_gear_life(report: dict[str, Any], result: "JumpResult", maps: "JointMaps") -> list[str]:
-    """How many jumps the gears last that strike their stops in each; with advice if that is too few."""
+    """Return how many jumps gears that strike their stops in each last; with advice if that is too few."""
     import numpy as np
 
     from pareto_monoped.strength.factors import gear_life
@@ -232,6 +217,7 @@ def _add_gear_life(report: dict[str, Any], result: "JumpResult", maps: "JointMap
 
 
 def _audit(design: Design, maps: "JointMaps", calibration: "Calibration") -> dict[str, Any]:
+    from pareto_monoped.design import CONTROL, columns
     from pareto_monoped.jump.audit import audit
     from pareto_monoped.jump.balance import energy_balance
     from pareto_monoped.robot.population import robot_arrays
@@ -259,13 +245,7 @@ def _write_trace(path: Path, result: "JumpResult", *, force: bool) -> None:
 
 
 def _write_model(
-    path: Path,
-    design: Design,
-    motors: dict[str, str],
-    maps: "JointMaps",
-    calibration: "Calibration",
-    *,
-    force: bool,
+    path: Path, design: Design, motors: dict[str, str], maps: "JointMaps", calibration: "Calibration", *, force: bool
 ) -> None:
     from pareto_monoped.files import write_text
     from pareto_monoped.jump.model import mjcf

@@ -1,12 +1,6 @@
-"""Options that several commands share.
+"""Options that several commands share: a robot's motors, where work is done, and what the shell completes.
 
-The options that name the motors of a robot: ``--motor`` for both joints, or ``--hip-motor`` and ``--knee-motor``.
-
-Options that say where the work is done: threads of this process, processes of this machine, or a cluster.
-
-What the shell completes besides commands, options and files: names of motors, variables, measures and the like.
-
-A name is looked up when the shell asks for it; nothing that takes longer than a key press is imported for that.
+Nothing that takes longer than a key press is imported to complete a name.
 """
 
 from collections.abc import Callable, Iterable
@@ -20,7 +14,7 @@ import click
 
 from pareto_monoped.cli.terminal import echo
 from pareto_monoped.design import PAPER_MOTOR
-from pareto_monoped.errors import DatabaseError, InputError, complaint
+from pareto_monoped.errors import DatabaseError, InputError, ParetoMonopedError, complaint
 from pareto_monoped.storage.address import is_address
 from pareto_monoped.storage.place import place_of
 
@@ -37,11 +31,7 @@ class Local(click.Path):
         super().__init__(dir_okay=dir_okay, file_okay=file_okay, allow_dash=allow_dash, path_type=Path)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The path.
-
-        Raises:
-            InputError: the address of a server, which is not repeated because it may hold a password.
-        """
+        """Return the path; the address of a server is refused and not repeated, because it may hold a password."""
         if isinstance(value, str) and is_address(value):
             what = "dir" if not self.file_okay else "file"
             if param is not None:
@@ -61,11 +51,7 @@ class _Database(click.Path):
         self._servers = servers
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The ``StudyPlace`` that a user names.
-
-        Raises:
-            DatabaseError: an address that cannot be one of a study, or of a server where only files will do.
-        """
+        """Return the ``StudyPlace``; an address of no study, or where only files will do, is a ``DatabaseError``."""
         if not isinstance(value, str) or not is_address(value):
             return super().convert(value, param, ctx)
         place = place_of(value)
@@ -85,11 +71,7 @@ class _OutputFile(Local):
         self._endings = endings
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """The path.
-
-        Raises:
-            InputError: it has the ending of another kind of file.
-        """
+        """Return the path; the ending of another kind of file is refused."""
         path: Path = super().convert(value, param, ctx)
         if path.suffix and path.suffix.lower() not in self._endings:
             option = max(param.opts, key=len) if param else "file"
@@ -113,10 +95,7 @@ sample_seed_option = click.option(
     "--seed", type=click.IntRange(min=0), metavar="N", help="Of the samples.  [default: the study's, or 1]"
 )
 uncertainty_option = click.option(
-    "--uncertainty",
-    type=Local(),
-    metavar="FILE.toml",
-    help="TOML file of ranges, instead of the study's or ours.",
+    "--uncertainty", type=Local(), metavar="FILE.toml", help="TOML file of ranges, instead of the study's or ours."
 )
 
 
@@ -183,15 +162,10 @@ def _formats() -> Iterable[str]:
 
 
 def trials(ctx: "click.Context", _: "click.Parameter", incomplete: str) -> "list[CompletionItem]":
-    """Numbers of the trials on the front of the study that the line names so far; nothing where none can be read.
-
-    Shells that show help beside a word show the objectives.
-    """
+    """Return numbers of the trials on the front of the study that the line names, with their objectives as help."""
     from click.shell_completion import CompletionItem
 
-    from pareto_monoped.errors import ParetoMonopedError
     from pareto_monoped.storage.kept_front import front_trials
-    from pareto_monoped.storage.place import place_of
 
     # An option without its value ends click's reading of a line, before arguments get their names.
     db = ctx.params.get("db") or next(iter(ctx.args), None)
@@ -213,16 +187,9 @@ formats = _completing(_formats)
 
 
 def motor_options(prefix: str = "") -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Options ``--motor``, ``--hip-motor`` and ``--knee-motor`` of a command; ``chosen_motors`` reads them.
-
-    Args:
-        prefix: of their help texts.
-    """
+    """Add options ``--motor``, ``--hip-motor`` and ``--knee-motor`` to a command; ``chosen_motors`` reads them."""
     both = click.option(
-        "--motor",
-        metavar="NAME",
-        shell_complete=motors,
-        help=f"{prefix}Name or TOML file.  [default: {PAPER_MOTOR}]",
+        "--motor", metavar="NAME", shell_complete=motors, help=f"{prefix}Name or TOML file.  [default: {PAPER_MOTOR}]"
     )
     hip = click.option(
         "--hip-motor",
@@ -237,11 +204,7 @@ def motor_options(prefix: str = "") -> Callable[[Callable[..., Any]], Callable[.
 
 
 def chosen_motors(motor: str | None, hip_motor: str | None, knee_motor: str | None) -> tuple[str, str]:
-    """Names or files of the hip's and the knee's motor.
-
-    Raises:
-        click.UsageError: one joint's alone, or ``--motor`` beside them.
-    """
+    """Return names or files of the hip's and the knee's motor; options that contradict each other are a usage error."""
     if hip_motor is None and knee_motor is None:
         return motor or PAPER_MOTOR, motor or PAPER_MOTOR
     if motor is not None:
@@ -266,7 +229,7 @@ scheduler_option = click.option(
 
 
 def where_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """``--processes`` and ``--scheduler``, handed over as ``processes`` and ``scheduler``."""
+    """Add options ``--processes`` and ``--scheduler``, handed over as ``processes`` and ``scheduler``."""
     processes = click.option(
         "--processes", type=click.IntRange(1, 256), metavar="N", help="Compute in N processes instead of threads."
     )
@@ -274,7 +237,7 @@ def where_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def where(processes: int | None, scheduler: str | None, workers: int | None) -> Where:
-    """What the options say; a usage error if they contradict each other."""
+    """Return what the options say; a usage error if they contradict each other."""
     given = {"--processes": processes, "--scheduler": scheduler, "--workers": workers}
     named = [option for option, value in given.items() if value is not None]
     if len(named) > 1:
@@ -285,12 +248,9 @@ def where(processes: int | None, scheduler: str | None, workers: int | None) -> 
 def executor_at(
     place: Where, *, limits: "Limits | None" = None, extra: str | None = None
 ) -> AbstractContextManager[Executor | None]:
-    """The executor for a place, None for threads; what happens to its workers is said on standard error.
+    """Return the executor for a place, None for threads; what happens to its workers is said on standard error.
 
-    Args:
-        place: what the options say.
-        limits: how long to wait for tasks and workers; None: as for jumps.
-        extra: whose packages other hosts must have in the same versions, too.
+    Packages of ``extra`` must have the same versions on other hosts; ``limits`` are those of jumps if None.
     """
     if place.processes is None and place.scheduler is None:
         return nullcontext()

@@ -1,7 +1,4 @@
-"""Command ``pareto``: the main job, from the actuator map to two fronts and the CAD of a knee; made of the others.
-
-``init``: a study file to start from.
-"""
+"""Command ``pareto``, the main job, made of the other commands, and ``init``: a study file to start from."""
 
 import contextlib
 import io
@@ -26,13 +23,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("study_file", metavar="[STUDY.toml]", required=False, type=Local())
-@click.option(
-    "-o",
-    "--output",
-    metavar="DIR",
-    type=Local(),
-    help="Folder for the results.  [default: reports/STUDY]",
-)
+@click.option("-o", "--output", metavar="DIR", type=Local(), help="Folder for the results.  [default: reports/STUDY]")
 @click.option("--db", metavar="DB", type=DATABASE_FILE, help="Database.  [default: beside STUDY.toml]")
 @click.option("--evaluations", type=click.IntRange(min=1), metavar="N", help="Number of jumps, instead of the study's.")
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
@@ -123,7 +114,7 @@ def pareto(
 
 
 def _first_study() -> Path:
-    """The study of the main job where none is named; outside a checkout, one to begin with is written."""
+    """Return the study of the main job where none is named; outside a checkout, one to begin with is written."""
     from pareto_monoped.definition.study_file import START
 
     path = Path("studies") / f"{START}.toml"
@@ -134,7 +125,7 @@ def _first_study() -> Path:
 
 
 def _named(table: Path, motor: str) -> Path:
-    """The table of one of several motors, such as actuators_U8.csv for actuators.csv."""
+    """Return the table of one of several motors, such as actuators_U8.csv for actuators.csv."""
     return table.with_name(f"{table.stem}_{Path(motor).stem if motor.endswith('.toml') else motor}{table.suffix}")
 
 
@@ -166,13 +157,13 @@ class _Steps:
 
 
 def _beside(db: Path, other: "Objectives") -> Path:
-    """The database of the second front, such as case_c_battery.db beside case_c.db."""
+    """Return the database of the second front, such as case_c_battery.db beside case_c.db."""
     word = "battery" if "electrical_energy_j" in other.names else "mechanical"
     return db.with_name(f"{db.stem}_{word}{db.suffix}")
 
 
 def _by(data: "StudyData") -> str:
-    """What the study minimises, in words; for other objectives than height and an energy, their names."""
+    """Return what the study minimises, in words; for other objectives than height and an energy, their names."""
     from pareto_monoped.analysis.choices import WORDS
 
     names = data.study.objectives.names
@@ -251,9 +242,7 @@ def init(name: str | None, output: Path | None, listed: bool, force: bool) -> No
 def write_study(name: str, path: Path, *, force: bool = False) -> None:
     """Write a shipped study to a file, and say what to do with it.
 
-    Raises:
-        StudyError: there is no such study.
-        OutputError: the file exists, and may have changes of the user's.
+    A file that exists is refused: it may have changes of the user's.
     """
     from pareto_monoped.definition.study_file import shipped_study
     from pareto_monoped.errors import OutputError

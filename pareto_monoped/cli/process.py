@@ -1,9 +1,7 @@
 """The process of a command: standard streams that always work, signals that end it in order, and a quick end.
 
-The one place that turns whatever a command raises into one line on stderr and an exit code.
-
-Code below the command line raises its own errors (``errors``), which say file, place and cure. What else comes up here
-is an error of the system, or a fault of this program; both end in one line as well.
+Whatever a command raises becomes one line on stderr and an exit code here. Code below the command line raises its own
+errors (``errors``); what else comes up is an error of the system or a fault of this program.
 """
 
 import atexit
@@ -27,21 +25,20 @@ from pareto_monoped.errors import ParetoMonopedError
 from pareto_monoped.files import ADRIFT, cure_of, is_adrift, is_failure
 
 _STANDARD = (0, 1, 2)
-_INTERRUPTED = 130
-"""128 and the number of SIGINT, as shells have it."""
+_INTERRUPTED = 130  #: 128 and the number of SIGINT, as shells have it.
 
 
 @contextmanager
 def owned() -> Iterator[Callable[[int], NoReturn]]:
-    """Take over the process for one command; yields the function that ends it with an exit code.
+    """Take over the process for one command; yield the function that ends it with an exit code.
 
-    - Closed standard streams lead nowhere. Otherwise the next file that is opened would take their place, and what is
-      printed would be written into it.
+    - Closed standard streams lead nowhere. Otherwise what is printed would be written into the next file that is
+      opened.
     - Text that the streams' encoding lacks is written as escapes.
-    - SIGTERM and SIGHUP are an interrupt, as Ctrl-C is, so that no temporary file stays. A SIGHUP that the process
-      began with ignored (nohup) stays ignored.
-    - At the end, handlers of other modules run, but Python does not take its modules and their objects apart, which
-      takes longer than many commands.
+    - SIGTERM and SIGHUP are an interrupt, as Ctrl-C is, so that no temporary file stays. An ignored SIGHUP (nohup)
+      stays ignored.
+    - At the end, handlers of other modules run, but Python does not take its modules apart, which takes longer than
+      many commands.
     """
     _open_streams()
     for stream in (sys.stdout, sys.stderr):
@@ -96,17 +93,14 @@ def _flush() -> None:
             continue
 
 
-TRACEBACK = "PARETO_MONOPED_TRACEBACK"
-"""Environment variable that makes faults of the program show where they come from."""
+TRACEBACK = "PARETO_MONOPED_TRACEBACK"  #: Environment variable that makes faults of the program show their origin.
 _KINDS = {"integer": "whole number", "float": "number"}
-_KIND = re.compile(rf"is not a valid ({'|'.join(_KINDS)})(?: range)?")
-"""How click calls what must be a number."""
-_LONGEST = 1200
-"""Characters of a message; of longer ones, such as on a text of a megabyte, the middle is left out. Our own choice."""
+_KIND = re.compile(rf"is not a valid ({'|'.join(_KINDS)})(?: range)?")  #: How click calls what must be a number.
+_LONGEST = 1200  #: Characters of a message; longer ones, such as of a megabyte, lose their middle. Our own choice.
 
 
 def told(error: BaseException) -> tuple[str, int]:
-    """The line on stderr and the exit code for what a command raised."""
+    """Return the line on stderr and the exit code for what a command raised."""
     if isinstance(error, click.exceptions.Abort | KeyboardInterrupt):
         return "interrupted", 130
     if isinstance(error, click.ClickException):
@@ -129,7 +123,6 @@ def told(error: BaseException) -> tuple[str, int]:
 
 
 def _of_click(error: click.ClickException) -> str:
-    """Its message, in the words of this program."""
     if isinstance(error, click.NoSuchOption):
         # The first is the most similar.
         near = difflib.get_close_matches(error.option_name, error.possibilities or (), n=1)
@@ -138,7 +131,7 @@ def _of_click(error: click.ClickException) -> str:
 
 
 def _of_system(error: OSError) -> tuple[str, int]:
-    """An error of the system that no other code has answered."""
+    """Return an error of the system that no other code has answered."""
     if error.filename is None and is_adrift():
         return f"error: {ADRIFT}", 2
     files = [os.fsdecode(part) for part in (error.filename, error.filename2) if isinstance(part, str | bytes)]
@@ -148,7 +141,7 @@ def _of_system(error: OSError) -> tuple[str, int]:
 
 
 def _line(text: str) -> str:
-    """A message on one line, of bounded length and without anything that a terminal would obey."""
+    """Return a message on one line, of bounded length and without anything that a terminal would obey."""
     line = name(" ".join(text.splitlines()).strip())
     if len(line) <= _LONGEST:
         return line
@@ -156,7 +149,6 @@ def _line(text: str) -> str:
 
 
 def _place(error: BaseException) -> str:
-    """Where in this package an error came up."""
     package = Path(__file__).parent.parent
     for frame in reversed(traceback.extract_tb(error.__traceback__)):
         path = Path(frame.filename)

@@ -1,7 +1,4 @@
-"""``robust``: designs of a study under uncertainty.
-
-``sensitivity``: which variable and which assumption moves a design's measures most.
-"""
+"""Commands on uncertainty: ``robust`` for designs of a study, and ``sensitivity`` for what moves a design most."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -11,17 +8,6 @@ from typing import TYPE_CHECKING
 import click
 
 from pareto_monoped.cli import options
-from pareto_monoped.cli.options import (
-    DATABASE,
-    HTML_FILE,
-    executor_at,
-    force_option,
-    sample_seed_option,
-    uncertainty_option,
-    where,
-    where_options,
-    workers_option,
-)
 from pareto_monoped.cli.selection import required, selector_options
 from pareto_monoped.cli.terminal import echo, wrapped
 from pareto_monoped.storage.place import StudyPlace
@@ -37,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("db", type=DATABASE)
+@click.argument("db", type=options.DATABASE)
 @click.option(
     "--trial",
     "trials",
@@ -56,10 +42,10 @@ if TYPE_CHECKING:
 @click.option(
     "--samples", type=int, metavar="N", help="Per design.  [default: 256, or the study's if it asks for more]"
 )
-@sample_seed_option
-@uncertainty_option
-@workers_option
-@where_options
+@options.sample_seed_option
+@options.uncertainty_option
+@options.workers_option
+@options.where_options
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
 def robust(
     db: StudyPlace,
@@ -86,7 +72,7 @@ def robust(
 
     if trials and every > 1:
         raise click.UsageError("--every goes with the front, not with --trial; drop one")
-    place = where(processes, scheduler, workers)
+    place = options.where(processes, scheduler, workers)
     kept = read_front(db)
     ranges, samples, seed = asked(kept.study, uncertainty, samples, seed)
     chosen = list(trials) or kept.rows["trial"].tolist()[::every]
@@ -96,7 +82,7 @@ def robust(
 
         data = read_study(db)
         chosen += [other.trial for trial in chosen for other in alternatives(data, trial, count=count)]
-    with executor_at(place) as executor:
+    with options.executor_at(place) as executor:
         results = run_robust(
             db,
             ranges,
@@ -152,7 +138,7 @@ _DEFAULT_BLOCKS, _DEFAULT_WITHIN = 256, 2.0
 
 
 @click.command()
-@click.argument("db", type=DATABASE)
+@click.argument("db", type=options.DATABASE)
 @selector_options
 @click.option(
     "--samples",
@@ -168,12 +154,12 @@ _DEFAULT_BLOCKS, _DEFAULT_WITHIN = 256, 2.0
     metavar="PERCENT",
     help="How far variables move, of their ranges.  [default: 2]",
 )
-@sample_seed_option
-@uncertainty_option
-@workers_option
-@where_options
-@click.option("--plot", type=HTML_FILE, metavar="FILE.html", help="Write a chart that needs no network.")
-@force_option
+@options.sample_seed_option
+@options.uncertainty_option
+@options.workers_option
+@options.where_options
+@click.option("--plot", type=options.HTML_FILE, metavar="FILE.html", help="Write a chart that needs no network.")
+@options.force_option
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
 def sensitivity(
     db: StudyPlace,
@@ -200,7 +186,7 @@ def sensitivity(
     from pareto_monoped.pareto.selectors import Trial
     from pareto_monoped.storage.front_reader import read_front
 
-    place = where(processes, scheduler, workers)
+    place = options.where(processes, scheduler, workers)
     wanted, kept = required(selector), read_front(db)
     ranges, _, chosen_seed = asked(kept.study, uncertainty, None, seed)
     if isinstance(wanted, Trial):
@@ -208,7 +194,7 @@ def sensitivity(
     else:
         refuse_empty(kept.rows, db)
         trial = pick_design(kept.rows, wanted, kept.study.objectives).trial
-    with executor_at(place) as executor:
+    with options.executor_at(place) as executor:
         found = find(
             db,
             trial,
@@ -236,7 +222,7 @@ def sensitivity(
 
 
 def _shown(study: "Study") -> "list[Measure]":
-    """The height, and the energy that is an objective of the study."""
+    """Return the height, and the energy that is an objective of the study."""
     from pareto_monoped.measures import ENERGIES, measure, nominal
 
     objectives = [nominal(name) for name in study.objectives.names]

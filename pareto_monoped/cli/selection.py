@@ -19,35 +19,16 @@ _CHOOSERS = "--knee, --tradeoff, --weights, --compromise, --nearest, --trial"
 def selector_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the options that select one design; ``command`` receives them as the keyword ``selector``.
 
-    Conditions combine; more than one way to choose is a usage error. Without any of them, ``selector`` is None, which
-    ``required`` refuses.
+    Conditions combine; more than one way to choose is a usage error. Without any, ``selector`` is None, see
+    ``required``.
     """
+    condition = functools.partial(click.option, multiple=True, metavar="NAME=X", shell_complete=options.conditions)
 
     @click.option("--min-height", type=float, metavar="M", help="Least energy for a jump of at least M metres.")
     @click.option("--max-energy", type=float, metavar="J", help="Highest jump for at most J joules.")
-    @click.option(
-        "--limit",
-        multiple=True,
-        metavar="NAME=X",
-        shell_complete=options.conditions,
-        help="Condition: a measure at X or better.",
-    )
-    @click.option(
-        "--min",
-        "least",
-        multiple=True,
-        metavar="NAME=X",
-        shell_complete=options.conditions,
-        help="Condition: measure or variable of at least X.",
-    )
-    @click.option(
-        "--max",
-        "most",
-        multiple=True,
-        metavar="NAME=X",
-        shell_complete=options.conditions,
-        help="Condition: measure or variable of at most X.",
-    )
+    @condition("--limit", help="Condition: a measure at X or better.")
+    @condition("--min", "least", help="Condition: measure or variable of at least X.")
+    @condition("--max", "most", help="Condition: measure or variable of at most X.")
     @click.option("--knee", is_flag=True, help="The design where the front bends most.")
     @click.option("--tradeoff", is_flag=True, help="The design whose neighbours give up most for what they gain.")
     @click.option("--weights", metavar="WH,WE", help="Best weighted sum of the scaled objectives.")
@@ -112,7 +93,7 @@ def _selector(
 
 
 def required(selector: "Selector | None") -> "Selector":
-    """The selector; without one, a usage error that names the options."""
+    """Return the selector; without one, a usage error that names the options."""
     if selector is None:
         raise click.UsageError(
             "no selector given: must be one of --min-height M, --max-energy J, --limit NAME=X, --min NAME=X, "
@@ -123,15 +104,10 @@ def required(selector: "Selector | None") -> "Selector":
 
 
 def _conditions(
-    min_height: float | None,
-    max_energy: float | None,
-    limit: Sequence[str],
-    least: Sequence[str],
-    most: Sequence[str],
+    min_height: float | None, max_energy: float | None, limit: Sequence[str], least: Sequence[str], most: Sequence[str]
 ) -> "tuple[Condition | MaxEnergy, ...]":
-    """All conditions, in the order of the options."""
     from pareto_monoped.pareto.pick import at_or_better
-    from pareto_monoped.pareto.selectors import Condition, MaxEnergy
+    from pareto_monoped.pareto.selectors import CONDITION_NAMES, Condition, MaxEnergy
 
     found: list[Condition | MaxEnergy] = []
     if min_height is not None:
@@ -140,9 +116,9 @@ def _conditions(
     if max_energy is not None:
         found.append(MaxEnergy(energy_j=_finite("--max-energy", max_energy)))
     found += [at_or_better(*_pair("--limit", text, _directed())) for text in limit]
-    for name, value in (_pair("--min", text, _stored()) for text in least):
+    for name, value in (_pair("--min", text, CONDITION_NAMES) for text in least):
         found.append(Condition(name=name, side="min", value=value))
-    for name, value in (_pair("--max", text, _stored()) for text in most):
+    for name, value in (_pair("--max", text, CONDITION_NAMES) for text in most):
         found.append(Condition(name=name, side="max", value=value))
     return tuple(found)
 
@@ -173,7 +149,6 @@ def _wish(text: str) -> dict[str, float]:
 
 
 def _pair(option: str, text: str, known: Sequence[str]) -> tuple[str, float]:
-    """A name and a number from NAME=X."""
     name, _, value = text.partition("=")
     from pareto_monoped.measures import is_own, near_measures
 
@@ -187,14 +162,6 @@ def _pair(option: str, text: str, known: Sequence[str]) -> tuple[str, float]:
 
 
 def _directed() -> list[str]:
-    """Measures of which more or less is better."""
     from pareto_monoped.measures import GOAL_NAMES, measure
 
     return [name for name in GOAL_NAMES if measure(name).direction is not None]
-
-
-def _stored() -> Sequence[str]:
-    """Everything that a condition may be about."""
-    from pareto_monoped.pareto.selectors import CONDITION_NAMES
-
-    return CONDITION_NAMES

@@ -1,11 +1,4 @@
-"""Commands that look after a study database: ``verify`` and ``repair``.
-
-Command ``dashboard``: optuna-dashboard on a study, for this machine only and without leave to write.
-
-Command ``report``: one HTML page of one or more studies, and figures for print.
-
-``trials``: every trial of a study with all its measures, for other programs.
-"""
+"""Commands on a study database: ``verify``, ``repair``, ``dashboard``, ``report`` and ``trials``."""
 
 import errno
 import webbrowser
@@ -14,18 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pareto_monoped.cli.options import (
-    CSV_FILE,
-    DATABASE,
-    HTML_FILE,
-    PARQUET_FILE,
-    Local,
-    Where,
-    executor_at,
-    force_option,
-    where,
-    where_options,
-)
+from pareto_monoped.cli import options
 from pareto_monoped.cli.terminal import echo, name, note
 from pareto_monoped.errors import require_extra
 from pareto_monoped.storage.place import StudyPlace
@@ -37,12 +19,12 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("db", type=DATABASE)
+@click.argument("db", type=options.DATABASE)
 @click.option(
     "--simulate", type=click.IntRange(min=0), default=0, metavar="N", help="Simulate N trials again and compare."
 )
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
-@where_options
+@options.where_options
 def verify(db: StudyPlace, simulate: int, workers: int | None, processes: int | None, scheduler: str | None) -> None:
     """Check that nothing in a study has been lost or changed.
 
@@ -54,10 +36,10 @@ def verify(db: StudyPlace, simulate: int, workers: int | None, processes: int | 
     from pareto_monoped.storage.front_reader import foreign_note
     from pareto_monoped.storage.seals import UNSEALED
 
-    place = where(processes, scheduler, workers)
-    if place != Where() and not simulate:
+    place = options.where(processes, scheduler, workers)
+    if place != options.Where() and not simulate:
         raise click.UsageError("--processes and --scheduler go with --simulate only, which is what they do; drop them")
-    with executor_at(place) as executor:
+    with options.executor_at(place) as executor:
         result = verify_study(db, simulate=simulate, workers=workers or cores(), executor=executor)
     for line in result.findings:
         echo(f"found: {line}", err=True)
@@ -71,7 +53,7 @@ def verify(db: StudyPlace, simulate: int, workers: int | None, processes: int | 
 
 
 @click.command()
-@click.argument("db", type=DATABASE)
+@click.argument("db", type=options.DATABASE)
 def repair(db: StudyPlace) -> None:
     """Drop trials that an Optuna user has added to a study.
 
@@ -84,14 +66,12 @@ def repair(db: StudyPlace) -> None:
     echo(f"{db}: dropped {len(dropped)} trials{numbers}")
 
 
-HOST = "127.0.0.1"
-"""The loopback: nobody else in the network reaches the dashboard, which asks for no password."""
-PORT = 8080
-"""Where optuna-dashboard listens by default, too."""
+HOST = "127.0.0.1"  #: The loopback: nobody else in the network reaches the dashboard, which asks for no password.
+PORT = 8080  #: Where optuna-dashboard listens by default, too.
 
 
 @click.command()
-@click.argument("db", type=DATABASE)
+@click.argument("db", type=options.DATABASE)
 @click.option(
     "--port", type=click.IntRange(1, 65535), metavar="N", help=f"Where it listens.  [default: {PORT}, or any free one]"
 )
@@ -102,7 +82,6 @@ def dashboard(db: StudyPlace, port: int | None, browse: bool) -> None:
     It listens on this machine only. The study is opened for reading, also while it runs: notes, new names and deletions
     are refused there.
     """
-    from pareto_monoped.errors import require_extra
     from pareto_monoped.storage.status import read_summary
 
     require_extra("dashboard", "dashboard")
@@ -119,7 +98,7 @@ def dashboard(db: StudyPlace, port: int | None, browse: bool) -> None:
 
 
 def _application(db: StudyPlace) -> Any:
-    """The dashboard's WSGI application of a study."""
+    """Return the dashboard's WSGI application of a study."""
     from optuna_dashboard import wsgi
 
     from pareto_monoped.storage.place import storage_of
@@ -128,7 +107,7 @@ def _application(db: StudyPlace) -> Any:
 
 
 def _reading(application: Any) -> Any:
-    """The application for requests that read; others are answered with a refusal, which the page shows."""
+    """Return the application for requests that read; others are answered with a refusal, which the page shows."""
 
     def answered(environment: dict[str, Any], start: Any) -> Any:
         if environment["REQUEST_METHOD"] in ("GET", "HEAD"):
@@ -140,11 +119,7 @@ def _reading(application: Any) -> Any:
 
 
 def _server(application: Any, port: int | None) -> "WSGIServer":
-    """A server on the loopback, at the port asked for.
-
-    Raises:
-        InputError: that port is in use, or not allowed.
-    """
+    """Return a server on the loopback; raise ``InputError`` for a port that is in use or not allowed."""
     from socketserver import ThreadingMixIn
     from wsgiref.simple_server import WSGIRequestHandler, WSGIServer, make_server
 
@@ -175,22 +150,19 @@ def _server(application: Any, port: int | None) -> "WSGIServer":
 
 
 @click.command()
-@click.argument("dbs", metavar="DB [DB ...]", nargs=-1, required=True, type=DATABASE)
-@click.option("-o", "--output", type=HTML_FILE, metavar="FILE.html", help="The HTML page.")
+@click.argument("dbs", metavar="DB [DB ...]", nargs=-1, required=True, type=options.DATABASE)
+@click.option("-o", "--output", type=options.HTML_FILE, metavar="FILE.html", help="The HTML page.")
 @click.option(
     "--figures",
-    type=Local(file_okay=False),
+    type=options.Local(file_okay=False),
     metavar="DIR",
     help="Folder for figures for print, as SVG and PNG.",
 )
 @click.option(
-    "--exports",
-    type=Local(file_okay=False),
-    metavar="DIR",
-    help="Folder of exported designs, DIR/trial_N.",
+    "--exports", type=options.Local(file_okay=False), metavar="DIR", help="Folder of exported designs, DIR/trial_N."
 )
 @click.option("--no-jumps", is_flag=True, help="Leave out the jumps of the fronts' designs: quicker, and smaller.")
-@force_option
+@options.force_option
 def report(
     dbs: tuple[StudyPlace, ...],
     output: Path | None,
@@ -224,13 +196,13 @@ def report(
 
 
 @click.command()
-@click.argument("db", type=DATABASE)
-@click.option("--csv", "csv_file", metavar="FILE.csv", type=CSV_FILE, help="Write a table of text.")
-@click.option("--parquet", metavar="FILE.parquet", type=PARQUET_FILE, help="Write a table of Apache Parquet.")
+@click.argument("db", type=options.DATABASE)
+@click.option("--csv", "csv_file", metavar="FILE.csv", type=options.CSV_FILE, help="Write a table of text.")
+@click.option("--parquet", metavar="FILE.parquet", type=options.PARQUET_FILE, help="Write a table of Apache Parquet.")
 @click.option(
     "--state", type=click.Choice(["feasible", "infeasible", "failed"]), help="Only trials that ended like this."
 )
-@force_option
+@options.force_option
 def trials(db: StudyPlace, csv_file: Path | None, parquet: Path | None, state: str | None, force: bool) -> None:
     """Give all trials of a study with every measure, as a table.
 

@@ -166,7 +166,7 @@ def _state(facts: dict[str, Any]) -> str:
 
 
 def _other_limits(facts: dict[str, Any]) -> dict[str, str]:
-    """The line on the limits besides the least height; none if there are no others."""
+    """Return the line on the limits besides the least height; none if there are no others."""
     from pareto_monoped.strength.groups import REQUIRED_MEASURES
 
     limits: dict[str, float | None] = facts["settings"]["constraints"]
@@ -188,7 +188,7 @@ def _corner(facts: dict[str, Any]) -> str:
 
 
 def _at_height(facts: dict[str, Any]) -> dict[str, str]:
-    """The line on the best design at the headline height; none for objectives without a height."""
+    """Return the line on the best design at the headline height; none for objectives without a height."""
     from pareto_monoped.measures import measure
 
     lines = {}
@@ -241,7 +241,7 @@ def _print_end(summary: "RunSummary") -> None:
 
 @contextmanager
 def progress_reports(as_json: bool = False) -> "Iterator[Callable[[Progress], None]]":
-    """A callback that shows progress on stderr: a bar on a terminal, otherwise one line every few seconds.
+    """Return a callback that shows progress: a bar on a terminal, else a line on stderr every few seconds.
 
     As JSON it is a line on stdout for every stored generation.
     """

@@ -1,8 +1,7 @@
 r"""All that a command prints goes through here, so that no name in a file or database can steer the terminal.
 
-Names come from study and motor files, from databases of strangers and from file systems. Characters that a terminal
-obeys or hides (control characters, changes of writing direction, halves of characters) are shown as escapes, such as
-``\u001b``, which are also valid in JSON. Square brackets and colons stay as they are.
+Characters that a terminal obeys or hides (control characters, changes of writing direction, halves of characters) are
+shown as escapes, such as ``\u001b``, which are also valid in JSON.
 """
 
 import re
@@ -20,7 +19,7 @@ _BREAKS = {"\n": "\\n", "\t": "\\t"}
 
 
 def plain(text: object) -> str:
-    """The text with everything escaped that a terminal would obey or hide; line breaks and tabs stay."""
+    """Return the text with everything escaped that a terminal would obey or hide; line breaks and tabs stay."""
     return _UNUSUAL.sub(_escaped, str(text))
 
 
@@ -32,7 +31,7 @@ def _escaped(found: re.Match[str]) -> str:
 
 
 def name(text: object) -> str:
-    """A name or a path for a line of output: as ``plain``, and line breaks and tabs are escaped, too."""
+    """Return a name or a path for a line of output: as ``plain``, and line breaks and tabs are escaped, too."""
     return "".join(_BREAKS.get(letter, letter) for letter in plain(text))
 
 
@@ -45,12 +44,11 @@ def echo(text: object = "", *, err: bool = False, nl: bool = True) -> None:
             raise
 
 
-WIDTH = 80
-"""Letters per line of everything that is printed."""
+WIDTH = 80  #: Letters per line of everything that is printed.
 
 
 def wrapped(text: str, indent: int = 2) -> str:
-    """A sentence in lines of at most ``WIDTH`` letters; a number and its percent sign stay together."""
+    """Return a sentence in lines of at most ``WIDTH`` letters; a number and its percent sign stay together."""
     filled = textwrap.fill(
         text.replace(" %", "\u00a0%"),
         width=WIDTH,
@@ -68,7 +66,7 @@ def note(text: str) -> None:
 
 
 def new_console(**options: Any) -> "Console":
-    """A console for tables: text is printed as it is, escaped as by ``plain``, without markup or emoji codes."""
+    """Return a console for tables: text is printed as it is, escaped as by ``plain``, without markup or emoji codes."""
     from rich.console import Console
 
     class Plain(Console):

@@ -29,11 +29,7 @@ _REST_S = 1.0  # at the apex, before the viewer begins again
 
 
 def require_what_shows(gif: Path | None, video: Path | None, view: bool) -> None:
-    """Refuse a film or a viewer that cannot be had here, before anything is simulated.
-
-    Raises:
-        InputError: no CAD extra, a file of another kind, no encoder, or no display.
-    """
+    """Raise ``InputError`` for a film or a viewer that cannot be had here, before anything is simulated."""
     if gif is None and video is None and not view:
         return
     from pareto_monoped.errors import require_extra
@@ -85,11 +81,7 @@ def write_films(
 
 
 def view_jump(design: "Design", maps: "JointMaps", calibration: "Calibration", trace: Trace, *, slower: float) -> None:
-    """Show the recorded jump in MuJoCo's viewer, with the parts' own meshes, until its window is closed.
-
-    Raises:
-        InputError: the viewer cannot be opened.
-    """
+    """Show the recorded jump in MuJoCo's viewer, with the parts' own meshes, until its window is closed."""
     import mujoco
 
     from pareto_monoped.cad.export import export_design

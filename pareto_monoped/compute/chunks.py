@@ -1,7 +1,4 @@
-"""Rows of work in chunks, given to any ``concurrent.futures.Executor`` and put together again in order.
-
-The pieces must not depend on each other: where the cuts are then changes nothing but the time.
-"""
+"""Rows of independent work in chunks, given to any ``concurrent.futures.Executor`` and put together again in order."""
 
 import statistics
 import time
@@ -15,15 +12,10 @@ from weakref import WeakKeyDictionary
 T = TypeVar("T")
 Item = TypeVar("Item")
 
-LEAST_TASK_S = 0.25
-"""Least work in a task. Handing a task to a cluster takes about a millisecond, which is then below one percent."""
-_FIRST_ROWS = 64
-"""Rows of the task that shows how long a row takes. Our own choice: a tenth of a second of jumps on one core."""
-AT_ONCE = 16
-"""Pieces of work that wait for an executor at a time. Our own choice: pieces of 8,000 jumps make 500 tasks together,
-and their results take 50 MB."""
-_REMEMBERED = 9
-"""Tasks whose speed counts. Our own choice: enough that one slow task does not decide."""
+LEAST_TASK_S = 0.25  #: Least work in a task: giving one to a cluster takes a millisecond, below one percent of it.
+_FIRST_ROWS = 64  #: Rows of the task that measures the time per row: a tenth of a second of jumps. Our own choice.
+AT_ONCE = 16  #: Pieces that wait for an executor at a time: results of 8,000 jumps each take 50 MB. Our own choice.
+_REMEMBERED = 9  #: Tasks whose speed counts. Our own choice: enough that one slow task does not decide.
 
 
 class Pace:
@@ -37,9 +29,9 @@ class Pace:
         self._seconds.append(seconds / rows)
 
     def cuts(self, start: int, stop: int) -> list[int]:
-        """Where to cut rows ``start`` to ``stop``, both ends included, so that each task takes long enough.
+        """Return where to cut rows ``start`` to ``stop``, both ends included, so that each task takes long enough.
 
-        As long as nothing is known, the first task is a small one, and the rest is cut when it is done.
+        While the pace is unknown, the first task is a small one, and the rest is cut when it is done.
         """
         if not self._seconds:
             return sorted({start, min(start + _FIRST_ROWS, stop)})
@@ -52,24 +44,17 @@ _paces: WeakKeyDictionary[Executor, dict[object, Pace]] = WeakKeyDictionary()
 
 
 def pace_of(executor: Executor, *work: object) -> Pace:
-    """The pace of some work on an executor, which later calls with the same work go on with."""
+    """Return the pace of some work on an executor, which later calls with the same work go on with."""
     return _paces.setdefault(executor, {}).setdefault(work, Pace())
 
 
 def spread(
     executor: Executor, pace: Pace, count: int, work: Callable[..., T], of_rows: Callable[[slice], Sequence[Any]]
 ) -> list[T]:
-    """The results of some work on ``count`` rows, one per chunk, in the order of the rows.
+    """Return the results of some work on ``count`` rows (at least 1), one per chunk, in the order of the rows.
 
-    Args:
-        executor: does the tasks, in any order and anywhere.
-        pace: says how many rows make a task, and learns from them.
-        count: number of rows, at least 1.
-        work: a function at the top level of a module, which another process can find by its name.
-        of_rows: its arguments for some rows, such as slices of arrays.
-
-    Raises:
-        Exception: what a task raised; tasks that have not begun are then called off.
+    ``work`` must be a function at the top level of a module; ``of_rows`` returns its arguments for some rows. If a task
+    raises an exception, so does this function, and tasks that have not begun are called off.
     """
     results: list[T] = []
     done = 0
@@ -91,18 +76,11 @@ def spread(
 
 
 def in_turn(work: Callable[[Item], T], items: Iterable[Item], at_once: int) -> Generator[T, None, None]:
-    """The results of some work on items, in the order of the items.
+    """Yield the results of some work on items, in the order of the items, with up to ``at_once`` items under way.
 
-    Work that waits for an executor leaves its workers without tasks at its end; with several under way, the next ones'
-    tasks are then already there. Close the iterator where it is left before its end.
-
-    Args:
-        work: may be called by several threads at a time.
-        items: what it is done on.
-        at_once: how many items may be under way at a time; 1: in this thread.
-
-    Raises:
-        Exception: what the work raised; items that have not begun are then called off.
+    While one item ends, the next ones' tasks keep the executor's workers busy. With ``at_once`` 1 the work is done in
+    this thread, else in several. An exception of the work is raised here, and items that have not begun are called off.
+    Close the iterator if it is left before its end.
     """
     if at_once == 1:
         yield from map(work, items)
@@ -121,7 +99,7 @@ def in_turn(work: Callable[[Item], T], items: Iterable[Item], at_once: int) -> G
 
 
 def timed(work: Callable[..., T], *arguments: Any) -> tuple[T, float]:
-    """The result of some work where it is done, and how many seconds it took there."""
+    """Return the result of some work where it is done, and how many seconds it took there."""
     start_s = time.perf_counter()
     result = work(*arguments)
     return result, time.perf_counter() - start_s

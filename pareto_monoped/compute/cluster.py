@@ -1,7 +1,4 @@
-"""The workers of a Dask scheduler.
-
-Dask sends tasks and results by pickle, between hosts that trust each other (``docs/scaling.md``).
-"""
+"""The workers of a Dask scheduler. Dask sends pickles, so all hosts must trust each other (``docs/scaling.md``)."""
 
 import logging
 import threading
@@ -18,22 +15,15 @@ from pareto_monoped.errors import InputError, WorkerError, require_extra
 if TYPE_CHECKING:
     from distributed import Client
 
-_NEWS_S = 0.5
-"""Between two questions to the scheduler who its workers are."""
-_ANSWER_S = 5.0
-"""For the answer; a network that is cut for longer than this gives no news, see ``_SILENT_S``."""
-_SILENT_S = 30.0
-"""Without news before the scheduler counts as lost: three times as long as a short cut of the network."""
-_CONNECT_S = 10.0
-"""For the first connection: then a wrong address is likelier than a slow scheduler."""
+_NEWS_S = 0.5  #: Between two questions to the scheduler who its workers are.
+_ANSWER_S = 5.0  #: For the answer; a network that is cut for longer than this gives no news, see ``_SILENT_S``.
+_SILENT_S = 30.0  #: Time without news before the scheduler counts as lost: three times a short network failure.
+_CONNECT_S = 10.0  #: For the first connection: then a wrong address is likelier than a slow scheduler.
 _NO_WORKER = "has no worker"
 
 
 class DaskWorkers(Staff):
-    """Workers that a scheduler knows, as they come and go.
-
-    Args:
-        address: of the scheduler, such as ``tcp://10.0.0.7:8786``.
+    """Workers that the scheduler at an address such as ``tcp://10.0.0.7:8786`` knows, as they come and go.
 
     Raises:
         InputError: Dask is not installed here, the text is no address, or it asks for TLS without certificates.
@@ -58,27 +48,23 @@ class DaskWorkers(Staff):
         self._thread.start()
 
     def present(self) -> Mapping[str, Member]:
-        """The workers that the scheduler named last; none while there is no connection to it."""
+        """Return the workers that the scheduler named last; none while there is no connection to it."""
         return self._members if self._client.status == "running" else {}
 
     def state(self) -> str:
-        """Why none may be there."""
+        """Return why none may be there."""
         broken = self._client.status != "running" and self._state == _NO_WORKER
         return "does not answer (the connection has ended)" if broken else self._state
 
     def threads(self) -> int:
-        """Number of threads of all workers together at this moment.
-
-        Raises:
-            WorkerError: the scheduler does not answer.
-        """
+        """Return the present number of threads of all workers; raise ``WorkerError`` if no scheduler answers."""
         try:
             return sum(self._ask().values())
         except Exception as problem:  # see ``_listen``
             raise WorkerError(f"{self.label}: does not answer ({_words(problem)}); {self.cure}") from None
 
     def is_loss(self, problem: BaseException) -> bool:
-        """Whether a task ended because worker, scheduler or connection did."""
+        """Return whether a task ended because worker, scheduler or connection did."""
         from distributed.client import FutureCancelledError, FuturesCancelledError
         from distributed.comm import CommClosedError
         from distributed.scheduler import KilledWorker, NoValidWorkerError
@@ -114,7 +100,7 @@ class DaskWorkers(Staff):
                 time.sleep(_NEWS_S)
 
     def _connected(self) -> "Client":
-        """A new connection, made aside: where somebody accepts it and then stays silent, Dask waits for ever."""
+        """Return a new connection, made aside: where somebody accepts it and then stays silent, Dask waits for ever."""
         found: Future[Client] = Future()
         threading.Thread(target=self._connect, args=(found,), name="connecting", daemon=True).start()
         try:
@@ -127,10 +113,10 @@ class DaskWorkers(Staff):
         from distributed import Client
 
         class Kept(Client):  # type: ignore[misc]  # Dask tells no types
-            """A client that nobody but ``close`` closes.
+            """A client that only ``close`` closes.
 
-            When Dask's own is forgotten it closes itself, in the thread in which the garbage collector happens to run;
-            where that is just starting the next client, it waits for a lock that it holds itself.
+            Dask's own closes itself in the thread in which the garbage collector runs; if that thread is just starting
+            the next client, it waits for a lock that it holds itself.
             """
 
             def __del__(self) -> None:
@@ -166,7 +152,7 @@ class DaskWorkers(Staff):
             self._state = _NO_WORKER
 
     def _ask(self) -> Mapping[str, int]:
-        """Number of threads by address of each worker, as the scheduler now answers."""
+        """Return the number of threads by address of each worker, as the scheduler now answers."""
         threads: Mapping[str, int] = self._client.sync(self._client.scheduler.ncores, callback_timeout=_ANSWER_S)
         return threads
 
@@ -180,24 +166,13 @@ class DaskWorkers(Staff):
 
 
 def threads_of(address: str) -> int:
-    """Number of threads of a scheduler's workers at this moment; 0 while none has come.
-
-    Args:
-        address: of the scheduler.
-
-    Raises:
-        InputError, WorkerError: see ``DaskWorkers``.
-    """
+    """Return the present number of threads of a scheduler's workers, which may be 0; raises as ``DaskWorkers`` does."""
     with closing(DaskWorkers(address)) as workers:
         return workers.threads()
 
 
 def _refuse_no_address(address: str) -> None:
-    """Refuse at once what cannot be an address, for which Dask would be asked again and again.
-
-    Raises:
-        InputError: it is none.
-    """
+    """Raise ``InputError`` at once for what cannot be an address, which Dask would try again and again."""
     from distributed.comm.addressing import get_address_host_port
 
     try:

@@ -1,7 +1,4 @@
-"""Functions compiled by numba, cached on disk where numba may write.
-
-Importing this module imports numba, so import it only where compiled functions are defined or called.
-"""
+"""Functions compiled by numba, cached on disk where numba may write. Importing this module imports numba."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
@@ -17,14 +14,10 @@ def compiled(function: Function) -> Function:
 
 
 def c_function(signature: Any, function: Callable[..., object]) -> Any:
-    """Compile a callback for C.
+    """Compile a callback for C, which must not return or raise anything; ``signature`` is numba's.
 
     The code cached on disk is used until the file of ``function`` or a value that it closes over changes. Numba does
-    not notice a change in another file, of a function that it calls or of a constant that it reads.
-
-    Args:
-        signature: numba's signature of result and arguments.
-        function: must not return or raise anything.
+    not notice a change of a function or constant in another file.
     """
     return _kept(lambda **options: numba.cfunc(signature, **options), function).ctypes
 

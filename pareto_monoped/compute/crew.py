@@ -1,9 +1,8 @@
 """An executor over workers that may die, hang, be slow, come late or compute other numbers.
 
-A ``Crew`` hands each task to one worker at a time and does it again elsewhere if that worker is lost. A task has one
-result, the first that comes; tasks must therefore be pure functions. Who the workers are and whether they are still
-there is known to a ``Staff``: processes of this machine (``compute.processes``) or the workers of a Dask scheduler
-(``compute.cluster``).
+A ``Crew`` hands each task to one worker at a time and does it again elsewhere if that worker is lost. The first result
+counts; tasks must therefore be pure functions. A ``Staff`` knows the workers: processes of this machine
+(``compute.processes``) or those of a Dask scheduler (``compute.cluster``).
 """
 
 import queue
@@ -20,18 +19,12 @@ from typing import Any
 
 from pareto_monoped.errors import WorkerError
 
-_TICK_S = 0.1
-"""Between two looks at the clock. Our own choice: short beside a task."""
-_AHEAD = 1
-"""Tasks given to a worker beyond those that it does at a time: the next is then already there."""
-_MOST_LOSSES = 4
-"""Workers that a task may lose before it is given up: it may be the task that ends them. Our own choice."""
-_STILLBORN = 6
-"""Workers that may end before their first answer, one after the other. Our own choice."""
-_PATIENT_S = 2.0
-"""Without any worker before the user hears of it. Our own choice: a scheduler lists its workers within a second."""
-_LATE = 4.0
-"""A task that takes so many times as long as usual is also given to a worker that has nothing to do."""
+_TICK_S = 0.1  #: Between two looks at the clock. Our own choice: short beside a task.
+_AHEAD = 1  #: Tasks given to a worker beyond those that it does at a time: the next is then already there.
+_MOST_LOSSES = 4  #: Workers that a task may lose before it fails: it may be what ends them. Our own choice.
+_STILLBORN = 6  #: Workers that may end before their first answer, one after the other. Our own choice.
+_PATIENT_S = 2.0  #: Time without workers before the user hears of it; a scheduler lists them within a second.
+_LATE = 4.0  #: A task that takes so many times as long as usual is also given to a worker that has nothing to do.
 
 
 class LostError(Exception):
@@ -42,53 +35,42 @@ class LostError(Exception):
 class Member:
     """A worker; an ``executor`` that does tasks on this worker and nowhere else."""
 
-    name: str
-    """As the user knows it, such as ``worker tcp://10.0.0.7:40001``."""
+    name: str  #: As the user knows it, such as ``worker tcp://10.0.0.7:40001``.
     executor: Executor
-    threads: int = 1
-    """That a task of it may use."""
-    slots: int = 1
-    """Tasks that it does at a time."""
+    threads: int = 1  #: That a task of it may use.
+    slots: int = 1  #: Tasks that it does at a time.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
     """How long a crew waits. Our own choices: a task of jumps takes half a second, the first one a few seconds more."""
 
-    task_s: float = 60.0
-    """Least time after which a worker that does not answer counts as hung."""
-    times: float = 20.0
-    """The same as a multiple of the longest task so far."""
-    first_s: float = 300.0
-    """The same for a worker's first task, for which it may have to compile."""
-    absent_s: float = 60.0
-    """How long to wait for scheduler and workers before giving up."""
+    task_s: float = 60.0  #: Least time after which a worker that does not answer counts as hung.
+    times: float = 20.0  #: The same as a multiple of the longest task so far.
+    first_s: float = 300.0  #: The same for a worker's first task, for which it may have to compile.
+    absent_s: float = 60.0  #: How long to wait for scheduler and workers before giving up.
 
 
-EXPORT_LIMITS = Limits(task_s=900.0)
-"""For tasks that are exports: each takes ten seconds to a minute, on a busy machine several. Our own choice."""
+EXPORT_LIMITS = Limits(task_s=900.0)  #: For exports: each takes ten seconds to several minutes. Our own choice.
 
 
 class Staff(ABC):
     """Workers that come and go."""
 
-    label: str
-    """Of all of them, for messages, such as ``scheduler tcp://10.0.0.7:8786``."""
-    cure: str
-    """What the user can do if nobody is there."""
-    replaces = False
-    """Whether a worker that is dismissed is ended and replaced."""
+    label: str  #: Of all of them, for messages, such as ``scheduler tcp://10.0.0.7:8786``.
+    cure: str  #: What the user can do if nobody is there.
+    replaces = False  #: Whether a worker that is dismissed is ended and replaced.
 
     @abstractmethod
     def present(self) -> Mapping[str, Member]:
-        """Who is there now, by name; returns at once."""
+        """Return who is there now, by name; returns at once."""
 
     def state(self) -> str:
-        """Why nobody may be there, in a few words."""
+        """Return why nobody may be there, in a few words."""
         return "has no worker"
 
     def is_loss(self, problem: BaseException) -> bool:
-        """Whether a task failed because its worker was lost, and not by itself."""
+        """Return whether a task failed because its worker was lost, and not by itself."""
         return False
 
     def dismiss(self, name: str) -> None:  # noqa: B027 - nothing, where workers belong to somebody else
@@ -106,8 +88,7 @@ class Task:
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
     future: Future[Any] = field(default_factory=Future)
-    number: int = 0
-    """Among the tasks of its executor."""
+    number: int = 0  #: Among the tasks of its executor.
     losses: int = 0
     holders: set[str] = field(default_factory=set)
 
@@ -131,21 +112,15 @@ class _Given:
     since_s: float
 
 
-Check = Callable[[Any], str | None]
-"""What is wrong with a worker by its answer to the greeting; None if it may work."""
+Check = Callable[[Any], str | None]  #: What is wrong with a worker by its answer to the greeting; None if it may work.
 
 
 class Crew(Executor):
-    """Shares tasks out among the workers of a staff.
+    """Shares tasks out among the workers of a staff, which is closed with the crew.
 
-    Args:
-        staff: the workers, which come and go; closed with the crew.
-        greeting: the first task of every worker; it is called with the worker's number of threads.
-        check: says what is wrong with the answer.
-        tell: called with a line for the user.
-        limits: how long to wait for tasks and workers.
-        seat: crews that share workers, such as those of a campaign's studies, have different ones: among workers with
-            equally little to do, each prefers another, or another thread of the same.
+    ``greeting`` is the first task of every worker and gets the worker's number of threads; ``check`` says what is wrong
+    with its answer. ``tell`` is called with lines for the user. Crews that share workers, such as those of a campaign's
+    studies, have different ``seat`` numbers: among workers with equally little to do, each prefers another.
     """
 
     def __init__(
@@ -380,7 +355,7 @@ class Crew(Executor):
         self._fail(WorkerError(f"{label}: {why}; {cure}"))
 
     def _absence(self) -> tuple[str, str]:
-        """Why no worker is available, and what the user can do."""
+        """Return why no worker is available, and what the user can do."""
         count = len(self._posts)
         if not count:
             return self._staff.state(), self._staff.cure
@@ -396,6 +371,5 @@ class Crew(Executor):
         self._alone_since_s = None
 
     def _open(self) -> list[Task]:
-        """Tasks without a result."""
         tasks = [*self._waiting, *(given.task for post in self._posts.values() for given in post.given)]
         return [task for task in dict.fromkeys(tasks) if not task.future.done() and task.function is not self._greeting]

@@ -1,7 +1,7 @@
-"""Fresh processes of this machine, which do tasks and can be ended at any moment.
+"""Fresh processes of this machine, which do tasks and can be ended at any moment: both ends of their connections.
 
-Both ends are here: ``Processes`` gives tasks, ``serve`` does them. A process is started as a program of its own, since
-the threads of simulator and CAD kernel do not survive a fork, and a script would be run again by ``multiprocessing``.
+``Processes`` gives tasks, ``serve`` does them. A process is started as a program of its own: the threads of simulator
+and CAD kernel do not survive a fork, and ``multiprocessing`` would run a script again.
 """
 
 import atexit
@@ -23,15 +23,11 @@ from typing import Any
 
 from pareto_monoped.compute.crew import LostError, Member, Staff, Task
 
-GRACE_S = 1.0
-"""From the word to end until a process is killed. Our own choice: a user waits two seconds at most."""
-_TERMINAL = {signal.SIGINT, signal.SIGHUP}
-"""A terminal sends these to all its processes. The one that started the others answers them, and tells the others."""
+GRACE_S = 1.0  #: From the word to end until a process is killed. Our own choice: a user waits two seconds at most.
+_TERMINAL = {signal.SIGINT, signal.SIGHUP}  #: A terminal sends these to all its processes; only the first answers.
 _PROGRAM = "import sys; from pareto_monoped.compute.processes import serve; serve(int(sys.argv[1]))"
-_STOP, _END = b"stop", b"end"
-"""What a process is told besides its tasks, which are pickles and so begin otherwise; a number follows ``stop``."""
-_RESULT, _PROBLEM, _MESSAGE = b"r", b"p", b"m"
-"""Before each pickle that a process sends back."""
+_STOP, _END = b"stop", b"end"  #: What a process is told besides tasks, which are pickles; a number follows ``stop``.
+_RESULT, _PROBLEM, _MESSAGE = b"r", b"p", b"m"  #: Before each pickle that a process sends back.
 
 
 def _how_it_ended(code: int) -> Exception:
@@ -80,14 +76,9 @@ class _Line:
 class Processes(Executor):
     """An executor of fresh processes, each of which does one task after the other.
 
-    A process that ends under a task is not replaced: the task fails, and once no process is left all others do. As a
-    context: leaving it by an exception ends the processes at once.
-
-    Args:
-        count: number of processes.
-        hear: called with what tasks ``say``, in another thread and before the task has its result.
-        lost: makes the exception of a task from the exit code of the process that ended under it.
-        environment: of the processes, besides that of this one.
+    A process that ends under a task is not replaced: ``lost`` makes the task's exception from its exit code, and once
+    no process is left all other tasks fail, too. ``hear`` is called with what tasks ``say``, in another thread and
+    before the task has its result. If an exception leaves the context, the processes end at once.
     """
 
     def __init__(
@@ -241,12 +232,7 @@ def _settle(future: Future[Any], answer: bytes) -> None:
 
 
 class LocalProcesses(Staff):
-    """A number of processes, of which each that is lost is replaced.
-
-    Args:
-        count: number of processes.
-        threads: of each.
-    """
+    """A number of processes, each with its threads; one that is lost is replaced."""
 
     replaces = True
     cure = "use fewer processes"
@@ -264,7 +250,7 @@ class LocalProcesses(Staff):
         self._members[name] = Member(name=name, threads=self._threads, executor=Processes())
 
     def present(self) -> Mapping[str, Member]:
-        """All processes; one that has ended is found out by its tasks."""
+        """Return all processes; one that has ended is found out by its tasks."""
         return dict(self._members)
 
     def dismiss(self, name: str) -> None:
@@ -288,8 +274,7 @@ class LocalProcesses(Staff):
 
 _parent: Connection | None = None
 _sending = threading.Lock()
-_at_work = _asked = 0
-"""Numbers of the task at hand, and of the last one that is asked to stop."""
+_at_work = _asked = 0  #: Numbers of the task at hand, and of the last one that is asked to stop.
 
 
 def _end() -> object:
@@ -302,15 +287,14 @@ def say(message: object) -> None:
 
 
 def asked_to_stop() -> bool:
-    """Whether the task at hand is asked to come to an end."""
+    """Return whether the task at hand is asked to come to an end."""
     return _asked >= _at_work
 
 
 def end_by(end: Callable[[], object]) -> None:
-    """Let this process end by a function, which tidies up, when it is told to, is alone, or gets SIGTERM.
+    """Let this process end by ``end`` when it is told to, is alone, or gets SIGTERM.
 
-    Args:
-        end: called in a thread of its own while the task at hand goes on; it does not return.
+    ``end`` tidies up in a thread of its own while the task at hand goes on, and does not return.
     """
     global _end
     _end = end
@@ -318,11 +302,7 @@ def end_by(end: Callable[[], object]) -> None:
 
 
 def serve(handle: int) -> None:
-    """Do one task after the other for the process that started this one, with which this one ends.
-
-    Args:
-        handle: file descriptor of the connection.
-    """
+    """Do tasks from the connection with this file descriptor until the process at its other end has ended."""
     global _parent, _at_work
     with suppress(OSError):
         os.dup2(2, 1)  # what a library prints is not among the results of a command

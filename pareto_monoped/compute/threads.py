@@ -6,12 +6,12 @@ _threads = 1
 
 
 def cores() -> int:
-    """Number of cores that this process may use."""
+    """Return the number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def task_threads() -> int:
-    """Threads of a task in this process; 1 in a worker that nobody has told."""
+    """Return threads of a task in this process; 1 in a worker that nobody has told."""
     return _threads
 
 

@@ -8,8 +8,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Literal, get_args
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
+from pareto_monoped.config import Strict
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import StudyError
 
@@ -17,7 +18,7 @@ Population = Annotated[int, Field(ge=2, le=100_000)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
 
-class AlgorithmSettings:
+class AlgorithmSettings(Strict):
     """Base class of the settings of all algorithms."""
 
     __slots__ = ()
@@ -31,8 +32,6 @@ class EvolutionSettings(AlgorithmSettings):
     The default population was chosen by measurement on Case C.
     """
 
-    __pydantic_config__ = ConfigDict(extra="forbid")
-
     name: Literal["nsga2", "sms_emoa", "age_moea2"]
     population: Annotated[int, Field(ge=4, le=100_000, multiple_of=2)] = 40
     crossover_probability: Share = 0.9
@@ -43,8 +42,6 @@ class EvolutionSettings(AlgorithmSettings):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SurrogateSettings(AlgorithmSettings):
     """Evolution that ranks many offspring by a cheap model and simulates the most promising."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: Literal["surrogate"]
     #: designs simulated in each of the first 50 generations; later ones have twice as many
@@ -64,8 +61,6 @@ class OptunaSettings(AlgorithmSettings):
     scores of the others in its batch, so its batches are small.
     """
 
-    __pydantic_config__ = ConfigDict(extra="forbid")
-
     name: Literal["optuna_nsga2", "optuna_tpe"]
     population: Annotated[int, Field(ge=1, le=100_000)] | None = None
 
@@ -78,8 +73,6 @@ class OptunaSettings(AlgorithmSettings):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RandomSettings(AlgorithmSettings):
     """Designs drawn uniformly within the bounds: the yardstick that every other search must beat."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: Literal["random"]
     population: Annotated[int, Field(ge=1, le=100_000)] = 40
@@ -96,8 +89,6 @@ class WeightedSettings(AlgorithmSettings):
 
     For other objectives than the paper's, ``weighted_cost`` says what the cost is.
     """
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: Literal["weighted_cmaes"]
     #: weight of the first objective in each run (lambda1); the other's is 1 - lambda1
@@ -123,8 +114,6 @@ OWN_ALGORITHM = "own:"
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OwnSettings(AlgorithmSettings):
     """An algorithm of the user's own, of which a study knows the name alone."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: Annotated[str, Field(pattern=rf"^{OWN_ALGORITHM}[A-Za-z_][A-Za-z0-9_]{{0,99}}$")]
 

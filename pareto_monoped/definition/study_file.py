@@ -10,9 +10,9 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from pareto_monoped.config import checked, read_toml
+from pareto_monoped.config import Positive, Strict, checked, read_toml
 from pareto_monoped.definition.algorithms import (
     ALGORITHMS,
     DEFAULT_ALGORITHM,
@@ -60,14 +60,9 @@ def shipped_study(name: str) -> str:
     return known[name].read_text(encoding="utf-8")
 
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stop:
+class Stop(Strict):
     """Conditions that end a study before its budget is used up."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     wall_time_s: Positive | None = None  #: longest running time, over all sessions
     #: plateau_evaluations, plateau_growth: end when the hypervolume has grown by less than the share ``plateau_growth``
@@ -77,10 +72,8 @@ class Stop:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StudyFile:
+class StudyFile(Strict):
     """Keys of a study file; its tables but ``stop``, the motors and the objectives are checked separately."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: Annotated[str, Field(min_length=1, max_length=200)]
     description: Annotated[str, Field(max_length=2000)] = ""

@@ -2,10 +2,7 @@
 
 A jump is well-conditioned if its height and energy are properties of the design and not accidents of the simulation:
 its energy balance closes, and neither a finer step nor a link longer by less than a micrometre changes it much.
-``LIMITS`` says how much; ``Audits.well_conditioned`` is the verdict that studies, reports and commands use.
-
-A full audit also measures what no limit is about. A brief one leaves that out, and where the result is clear after a
-few perturbed copies, no more of them jump.
+``LIMITS`` says how much; ``Audits.well_conditioned`` is the verdict.
 """
 
 from collections.abc import Mapping
@@ -18,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from pareto_monoped.actuator.ratiomap import Maps
 from pareto_monoped.compute.chunks import pace_of, spread
 from pareto_monoped.compute.threads import task_threads
-from pareto_monoped.design import CONTROL, DEFAULTS, NAMES, PAPER_NAMES, RATIOS, columns, complete
+from pareto_monoped.design import CONTROL, DEFAULTS, NAMES, PAPER_NAMES, RATIOS, Floats, columns, complete
 from pareto_monoped.jump.balance import balance_errors
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.controller_record import MOST_DELAY
@@ -27,20 +24,15 @@ from pareto_monoped.jump.shared import Setup, built, evaluator_of, setup_text
 from pareto_monoped.measures import AuditMeasures, measure
 from pareto_monoped.robot.population import robot_arrays
 
-Floats = NDArray[np.float64]
-
-PERTURBATION = 1e-6
-"""Relative size of the perturbations: half a micrometre of a link, far below any tolerance of manufacture."""
-SPREAD_PERCENTILE = 90.0
-"""Percentile of the changes under perturbations that is compared with the limit; the worst change is only recorded."""
+PERTURBATION = 1e-6  #: Relative size of the perturbations: half a micrometre of a link, less than any tolerance.
+SPREAD_PERCENTILE = 90.0  #: Percentile of the changes under perturbations that has a limit; the worst has none.
 PERTURBED = tuple(name for name in PAPER_NAMES if name not in RATIOS)
-"""Variables that are perturbed. A gear ratio only selects a gearbox: the robot is the same between two gearboxes."""
-FIRST_COPIES = 2
-"""How many perturbed copies of a design jump first in a brief audit."""
+"""Without gear ratios, which only select a gearbox."""
+FIRST_COPIES = 2  #: How many perturbed copies of a design jump first in a brief audit.
 CLEAR_SPREAD, CLEAR_HALF_STEP = 0.01, 0.2
-"""Shares of their limits that the changes of these copies and those with the step halved may reach if no more copies
-are to jump. Our own choice, by measurement: any jump that is smooth in its design stays far below both, and one that is
-not shows in one or the other (``benchmarks/audit_time.py``)."""
+"""Shares of their limits that the changes of these copies and of the halved step may reach if no more copies are to
+jump. Our own choice, measured by ``benchmarks/audit_time.py``: jumps that are smooth in their design stay far below.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,16 +55,11 @@ LIMITS: tuple[Limit, ...] = (
     Limit(name="half_step_energy", most=0.01, text="energy with the step halved"),
     # Energy that is unaccounted for is no better than energy that changes with the step.
     Limit(name="energy_balance_error", most=0.01, text="energy balance"),
-)
-"""All conditions on a well-conditioned jump, besides that there is a jump."""
+)  #: All conditions on a well-conditioned jump, besides that there is a jump.
 
 
 def exceeded(values: Mapping[str, float]) -> tuple[str, ...]:
-    """One line for each of ``LIMITS`` that an audited jump does not keep; empty if it is well-conditioned.
-
-    Args:
-        values: name to value of the audit's measures; NaN counts as too much.
-    """
+    """Return one line for each of ``LIMITS`` that an audited jump does not keep; the value NaN keeps none."""
     lines = []
     for limit in LIMITS:
         shown = measure(limit.name)
@@ -107,23 +94,15 @@ class Audits(AuditMeasures):
         return np.array([not reason for reason in self.reason], dtype=bool)
 
     def as_columns(self) -> dict[str, NDArray[np.generic]]:
-        """Column name to values of shape (n,), ``well_conditioned`` and ``reason`` last."""
+        """Return column name to values of shape (n,), ``well_conditioned`` and ``reason`` last."""
         values = {f.name: np.asarray(getattr(self, f.name)) for f in fields(self) if f.name != "reason"}
         return values | {"well_conditioned": self.well_conditioned, "reason": np.asarray(self.reason)}
 
 
 def perturbed(designs: Floats, count: int, rng: np.random.Generator) -> Floats:
-    """Perturbed copies of designs: each continuous variable changed by up to 1e-6 of its value.
+    """Return perturbed copies of designs: each continuous variable in use is changed by up to 1e-6 of its value.
 
-    Optional variables at their defaults are not in use, and stay.
-
-    Args:
-        designs: shape (n, 7) or (n, number of variables).
-        count: copies per design.
-        rng: source of the perturbations.
-
-    Returns:
-        The copies of the first design, then those of the second, ..., shape (n * count, number of variables).
+    The copies of the first design come first, then those of the second, ..., shape (n * count, number of variables).
     """
     copies = np.repeat(np.atleast_2d(complete(designs)), count, axis=0)
     places = [NAMES.index(name) for name in PERTURBED]
@@ -136,7 +115,7 @@ def perturbed(designs: Floats, count: int, rng: np.random.Generator) -> Floats:
 
 
 def finer(calibration: Calibration, parts: int) -> Calibration:
-    """The calibration with its step divided by ``parts``.
+    """Return the calibration with its step divided by ``parts``.
 
     The control period stays if the calibration names one, or if the controller could not keep the commands of a longer
     delay. Otherwise each step is a period, and both become shorter.
@@ -160,22 +139,14 @@ def audit(
     known: Jumps | None = None,
     brief: bool = False,
 ) -> Audits:
-    """Audit the jumps of designs.
+    """Audit the jumps of designs, which may be ``known`` already; ``executor`` makes the others in place of threads.
 
-    Args:
-        designs: shape (n, number of variables).
-        actuator_map: the gearboxes.
-        calibration: the jump model.
-        workers: threads.
-        executor: does the jumps in their place; what they mean is decided here.
-        perturbations: perturbed copies per design.
-        seed: of the perturbations; the same seed gives the same audit.
-        known: the jumps, if they have been simulated already.
-        brief: measure only what a limit is about, and perturb less often where the result is clear.
+    Each design has ``perturbations`` copies; the same ``seed`` gives the same audit. A brief audit measures only what
+    has a limit, and perturbs less often where the result is clear.
     """
     values = np.atleast_2d(complete(designs))
     jumps = evaluator_of(actuator_map, calibration, workers, executor=executor)
-    base = known or _of(jumps(values))
+    base = known or jumps(values)
     half = evaluator_of(actuator_map, finer(calibration, 2), workers, executor=executor)(values)
     halved = _changes("half_step", base, half)
     copies = perturbed(values, perturbations, np.random.default_rng(seed))
@@ -192,12 +163,7 @@ def audit(
     ok = np.flatnonzero(base.ok)
     if len(ok):
         balance[ok] = _open_balances(values[ok], jumps)
-    measured = {
-        "energy_balance_error": balance,
-        **halved,
-        **spread,
-        **rest,
-    }
+    measured = {"energy_balance_error": balance, **halved, **spread, **rest}
     reasons = tuple(
         "; ".join(exceeded({name: float(column[i]) for name, column in measured.items()}))
         if base.ok[i]
@@ -211,18 +177,8 @@ ONLY_IN_FULL = ("quarter_step_height_m", "quarter_step_energy", "control_period_
 """Measures of a full audit that no limit is about and that take jumps of their own."""
 
 
-def _of(evaluations: Evaluations) -> Jumps:
-    return Jumps(status=evaluations.status, height_m=evaluations.height_m, energy_j=evaluations.energy_j)
-
-
-def _spread(copies: Floats, base: Jumps, jumps: Evaluator) -> dict[str, Floats]:
-    """The changes of height and energy under perturbations.
-
-    Args:
-        copies: of each design, shape (n, copies, number of variables).
-        base: the jumps of the designs.
-        jumps: designs to evaluations.
-    """
+def _spread(copies: Floats, base: Jumps | Evaluations, jumps: Evaluator) -> dict[str, Floats]:
+    """Return the changes of height and energy in ``copies`` of each design, shape (n, copies, number of variables)."""
     found = jumps(copies.reshape(-1, copies.shape[-1]))
     height = np.abs(found.height_m.reshape(copies.shape[:2]) - base.height_m[:, None])
     energy = np.abs(found.energy_j.reshape(copies.shape[:2]) / base.energy_j[:, None] - 1.0)
@@ -235,7 +191,9 @@ def _spread(copies: Floats, base: Jumps, jumps: Evaluator) -> dict[str, Floats]:
     }
 
 
-def _brief_spread(copies: Floats, base: Jumps, jumps: Evaluator, smooth: NDArray[np.bool_]) -> dict[str, Floats]:
+def _brief_spread(
+    copies: Floats, base: Jumps | Evaluations, jumps: Evaluator, smooth: NDArray[np.bool_]
+) -> dict[str, Floats]:
     """``_spread`` of the first copies where these hardly change and the design is ``smooth``, else of all copies."""
     found = _spread(copies[:, :FIRST_COPIES], base, jumps)
     unclear = np.flatnonzero(~(smooth & _within(CLEAR_SPREAD, found)) & base.ok)
@@ -247,14 +205,14 @@ def _brief_spread(copies: Floats, base: Jumps, jumps: Evaluator, smooth: NDArray
 
 
 def _within(share: float, changes: Mapping[str, Floats]) -> NDArray[np.bool_]:
-    """Where all changes that have a limit lie within a share of it; NaN does not."""
+    """Return where all changes that have a limit lie within a share of it; NaN does not."""
     limited = [changes[limit.name] <= share * limit.most for limit in LIMITS if limit.name in changes]
     within: NDArray[np.bool_] = np.logical_and.reduce(limited)
     return within
 
 
 def _open_balances(values: Floats, jumps: Evaluator) -> Floats:
-    """What the energy balances of designs that jump leave open, shape (n,)."""
+    """Return what the energy balances of designs that jump leave open, shape (n,)."""
     if jumps.executor is None:
         return _balances((jumps.actuator_maps, jumps.calibration), values, jumps.workers)
     text = setup_text(jumps.actuator_maps, jumps.calibration)
@@ -263,7 +221,6 @@ def _open_balances(values: Floats, jumps: Evaluator) -> Floats:
 
 
 def _balances_of(text: str, values: Floats) -> Floats:
-    """What a worker does."""
     return _balances(built(text), values, task_threads())
 
 
@@ -274,9 +231,9 @@ def _balances(setup: Setup, values: Floats, workers: int) -> Floats:
 
 
 def _with_two_periods(values: Floats, jumps: Evaluator, quarter: Evaluations) -> tuple[Evaluations, Evaluations]:
-    """Jumps with a quarter of the step: with the control period as it is, and with a quarter of it; without delay.
+    """Return jumps at a quarter of the step without delay, with the full control period and with a quarter of it.
 
-    ``quarter``, the jumps under ``finer(calibration, 4)``, are one of both if there is no delay anyway.
+    Without delay, ``quarter``, the jumps under ``finer(calibration, 4)``, are one of both.
     """
     calibration = jumps.calibration
     simulation = calibration.simulation
@@ -295,7 +252,7 @@ def _with_two_periods(values: Floats, jumps: Evaluator, quarter: Evaluations) ->
 
 
 def _changes(prefix: str, base: Jumps | Evaluations, other: Evaluations) -> dict[str, Floats]:
-    """Absolute change of height and relative change of energy; infinite where ``other`` has lost the jump."""
+    """Return absolute change of height and relative change of energy; infinite where ``other`` has lost the jump."""
     lost = base.ok & ~other.ok
     height = np.where(lost, np.inf, np.abs(other.height_m - base.height_m))
     energy = np.where(lost, np.inf, np.abs(other.energy_j / base.energy_j - 1.0))
@@ -303,10 +260,10 @@ def _changes(prefix: str, base: Jumps | Evaluations, other: Evaluations) -> dict
 
 
 def _percentile(changes: Floats, ok: NDArray[np.intp], percent: float) -> Floats:
-    """A percentile of each row of ``changes``, shape (n, copies); NaN for rows not in ``ok``.
+    """Return a percentile of each row of ``changes``, shape (n, copies); NaN for rows not in ``ok``.
 
-    A perturbed jump that fails is the worst of changes: NaN becomes infinity. The percentile is the smallest change
-    that at least ``percent`` of the copies do not exceed. It is not interpolated, which infinity would spoil.
+    A failed copy (NaN) counts as an infinite change. The percentile is the smallest change that at least ``percent`` of
+    the copies do not exceed, not interpolated, because infinity would spoil it.
     """
     result = np.full(len(changes), np.nan)
     known = np.sort(np.where(np.isnan(changes[ok]), np.inf, changes[ok]), axis=1)

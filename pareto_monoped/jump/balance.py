@@ -1,10 +1,7 @@
-"""Where the energy of one jump went: a balance of the motors' work, from the start to the apex.
+"""The energy balance from the start of a jump to its apex: in full for one jump, and what remains open for many.
 
-How well the energy balances of many jumps close, all stepped at once.
-
-``balance.energy_balance`` says where the energy of one jump went. The audit of a front needs only what remains open,
-for hundreds of jumps. That takes the sum of all constraint forces and no entry for the integrator, and all jumps step
-together.
+The audit of a front needs only what remains open, for hundreds of jumps. This takes the sum of all constraint forces
+and no entry for the integrator, so all jumps step together.
 """
 
 from dataclasses import dataclass
@@ -13,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.design import Floats
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.callback import quiet
 from pareto_monoped.jump.end_stops import end_stops, slow_torque_n_m
@@ -22,7 +20,6 @@ from pareto_monoped.jump.single import Moment, constraint_forces, moments
 from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import RobotArrays
 
-Floats = NDArray[np.float64]
 HIP, KNEE = -2, -1
 
 
@@ -67,7 +64,7 @@ class EnergyBalance:
 
 
 def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibration) -> EnergyBalance:
-    """Where the energy of the first robot's jump went.
+    """Return where the energy of the first robot's jump went.
 
     The work of a force in a step is the force times the mean of the speeds before and after the step. With constant
     inertia this is exactly the change of kinetic energy that the force causes in MuJoCo's semi-implicit step. In a
@@ -115,7 +112,7 @@ def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibratio
 
 
 def _moved(moment: Moment, calibration: Calibration) -> Floats:
-    """How far the joints move in a step, as its work is booked, shape (nv,)."""
+    """Return how far the joints move in a step, as its work is booked, shape (nv,)."""
     if calibration.simulation.integrator == "RK4":
         return np.asarray(moment.after.qpos - moment.qpos)
     return np.asarray(0.5 * (moment.qvel + moment.after.qvel) * calibration.simulation.timestep_s)
@@ -148,7 +145,7 @@ def _integration_loss_j(moment: Moment, calibration: Calibration, moved: Floats)
 
 
 def _mesh_share(robots: RobotArrays, calibration: Calibration) -> Floats:
-    """The share of each drive's loss that its gearbox has; the chain, behind it, has the rest. Shape (2,)."""
+    """Return the share of each drive's loss that its gearbox has; the chain, behind it, has the rest. Shape (2,)."""
     mesh = gear_efficiency(robots, calibration.drive)[0]
     chain = np.array([1.0, calibration.drive.chain_efficiency])
     lost = 1.0 - mesh * chain
@@ -157,12 +154,12 @@ def _mesh_share(robots: RobotArrays, calibration: Calibration) -> Floats:
 
 
 def back_s(calibration: Calibration) -> float:
-    """How long before a state's speeds its positions are taken, see ``Simulation.positions_read``."""
+    """Return how long before a state's speeds its positions are taken, see ``Simulation.positions_read``."""
     return 0.5 * calibration.simulation.timestep_s if calibration.simulation.positions_read != "state" else 0.0
 
 
 def _energies(robots: RobotArrays, calibration: Calibration, moment: Moment) -> Floats:
-    """Kinetic energy of bodies and of rotors, potential energy, and what the end stops store, at a state."""
+    """Return kinetic energy of bodies and of rotors, potential energy, and what the end stops store, at a state."""
     import mujoco
 
     model, data = moment.model, moment.scratch
@@ -176,7 +173,7 @@ def _energies(robots: RobotArrays, calibration: Calibration, moment: Moment) -> 
 
 
 def _rotors_kinetic_j(robots: RobotArrays, calibration: Calibration, speed: Floats) -> float:
-    """What the turning parts have beyond the motion of the bodies that carry them, see ``robot.rotation``."""
+    """Return what the turning parts have beyond the motion of the bodies that carry them, see ``robot.rotation``."""
     hip, knee = speed
     armature = robots.armature_kg_m2[0]
     if calibration.joints.rotors == "armature":
@@ -208,14 +205,7 @@ class Balanced:
 
 
 def balance_errors(robots: RobotArrays, control: Floats, calibration: Calibration, workers: int = 1) -> Floats:
-    """``EnergyBalance.error`` of the jumps of n robots that can stand, shape (n,).
-
-    Args:
-        robots: n robots.
-        control: of each, see ``design.complete_control``.
-        calibration: the jump model.
-        workers: threads.
-    """
+    """Return ``EnergyBalance.error`` of the jumps of n robots that can stand, shape (n,)."""
     if calibration.simulation.integrator == "RK4":
         # Its steps leave the forces of their last stage, not those of the state.
         single = (take(robots, np.array([i])) for i in range(len(robots)))
@@ -225,14 +215,7 @@ def balance_errors(robots: RobotArrays, control: Floats, calibration: Calibratio
 
 @quiet()
 def balanced(robots: RobotArrays, control: Floats, calibration: Calibration, workers: int = 1) -> Balanced:
-    """The jumps of n robots that can stand, with their balances; not for the integrator RK4.
-
-    Args:
-        robots: n robots.
-        control: of each, see ``design.complete_control``.
-        calibration: the jump model.
-        workers: threads.
-    """
+    """Return the jumps of n robots that can stand, with their balances; not for the integrator RK4."""
     from pareto_monoped.jump.controller import APEX
 
     pose = start_pose(robots, calibration)
@@ -253,18 +236,10 @@ def balanced(robots: RobotArrays, control: Floats, calibration: Calibration, wor
 
 
 def _jumped(population: Population, calibration: Calibration, damping: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """Step all jumps to their ends.
+    """Step all jumps to their ends; a jump in which MuJoCo raises an error or warns ends as diverged.
 
-    Args:
-        population: n jumps, which have not begun.
-        calibration: the jump model.
-        damping: of the joints, shape (n, nv).
-
-    A jump in which MuJoCo raises an error or warns ends as diverged.
-
-    Returns:
-        The joints' work and what dampers and constraints took of it, in joules, shape (n,); positions and speeds at the
-        end, shape (n, nv).
+    ``damping`` of the joints has shape (n, nv). Return the joints' work and what dampers and constraints took of it, in
+    joules, shape (n,), and positions and speeds at the end, shape (n, nv).
     """
     from mujoco.batch import SimulationError
 
@@ -299,7 +274,7 @@ def _jumped(population: Population, calibration: Calibration, damping: Floats) -
 
 
 def _energies_j(batch: Any, qpos: Floats, qvel: Floats | float) -> Floats:
-    """Kinetic and potential energy of the simulations of a batch at given states, shape (n,)."""
+    """Return kinetic and potential energy of the simulations of a batch at given states, shape (n,)."""
     import mujoco
 
     batch.expand("opt.enableflags")[:] = int(mujoco.mjtEnableBit.mjENBL_ENERGY)

@@ -1,8 +1,7 @@
 """Calibrations: named, versioned records of everything that a jump depends on besides the robot.
 
-Three are shipped in ``data/calibrations``: ``reference``, well-posed and the default; ``paper``, the paper's
-simulation with readings, fitted to its Table I; ``ideal``, which is ``reference`` without losses. Users may
-write their own.
+Shipped in ``data/calibrations`` are ``reference``, well-posed and the default; ``paper``, the paper's simulation with
+readings, fitted to its Table I; and ``ideal``, which is ``reference`` without losses.
 """
 
 import json
@@ -14,33 +13,28 @@ from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from pareto_monoped.config import checked, read_toml
+from pareto_monoped.config import NotNegative, Positive, Strict, checked, read_toml
 from pareto_monoped.errors import CalibrationError, InputError, unknown_name
 from pareto_monoped.jump.calibration_defaults import DEFAULT
 from pareto_monoped.jump.controller_record import MOST_DELAY
 from pareto_monoped.robot.population import MassOptions
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 Share = Annotated[float, Field(gt=0.0, le=1.0)]
 Impedance = Annotated[float, Field(ge=0.0001, le=0.9999)]
-_STRICT = ConfigDict(extra="forbid")
 
+_SHIPPED = resources.files("pareto_monoped") / "data" / "calibrations"
 # Hundreds of times the steps of the shipped calibrations; the limit only keeps a typing error from running for days.
 _MOST_STEPS = 1e6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class EndStop:
-    """The rubber bumpers at both ends of one joint's range.
+class EndStop(Strict):
+    """The rubber bumpers at both ends of one joint's range, which harden as in ``SpringContact``.
 
-    A bumper is a spring-damper that hardens with compression (see ``SpringContact``), so that force sets in smoothly.
     A bumper of the parts, fully compressed, leaves the joint within the range that the CAD keeps free (``leg.stops``).
     """
-
-    __pydantic_config__ = _STRICT
 
     #: lower_rad, upper_rad: angles at which the joint meets the bumpers
     lower_rad: float
@@ -58,10 +52,8 @@ class EndStop:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Joints:
+class Joints(Strict):
     """Losses and ends of both joints."""
-
-    __pydantic_config__ = _STRICT
 
     #: damping_n_m_s_per_rad, friction_n_m: viscous and Coulomb friction of each joint
     damping_n_m_s_per_rad: NotNegative
@@ -85,10 +77,8 @@ class Joints:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Drive:
+class Drive(Strict):
     """What lies between motor and joint."""
-
-    __pydantic_config__ = _STRICT
 
     mesh_losses: bool  #: whether the gearbox has losses
     chain_efficiency: Share = 1.0  #: of the chain that drives the knee
@@ -107,7 +97,7 @@ class Drive:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SpringContact:
+class SpringContact(Strict):
     """The contact of a rubber foot with the floor: a spring-damper that hardens with compression.
 
     MuJoCo's impedance rises linearly with the compression r, up to d = ``impedance`` at w = ``width_m``. With u = r / w
@@ -115,8 +105,6 @@ class SpringContact:
     in the model of Hunt and Crossley (1975), which makes the jump well-posed. While the foot touches, the constraint
     adds a virtual mass d u / (1 - d u) / A, where A is the inverse mass of the foot's body.
     """
-
-    __pydantic_config__ = _STRICT
 
     kind: Literal["spring"]
     #: stiffness_n_per_m, damping_n_s_per_m: normal to the floor, at a compression of ``width_m`` and beyond
@@ -129,10 +117,8 @@ class SpringContact:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MujocoContact:
+class MujocoContact(Strict):
     """The contact of the foot, given by MuJoCo's own parameters (its documentation, "Solver parameters")."""
-
-    __pydantic_config__ = _STRICT
 
     kind: Literal["mujoco"]
     time_constant_s: Positive
@@ -144,10 +130,8 @@ class MujocoContact:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ContactGate:
+class ContactGate(Strict):
     """Torque whenever the foot touches the floor, decided at every step, as the paper words it."""
-
-    __pydantic_config__ = _STRICT
 
     rule: Literal["contact"]
     #: True takes the contact of the state before the last step, which is what MuJoCo's contact list holds after a step;
@@ -156,13 +140,8 @@ class ContactGate:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FadeGate:
-    """Torque that fades to zero as the foot rises.
-
-    At a foot clearance c the torque is multiplied by 1 - s(c / length_m), with s(u) = 3 u^2 - 2 u^3 for u from 0 to 1.
-    """
-
-    __pydantic_config__ = _STRICT
+class FadeGate(Strict):
+    """Torque that fades to zero as the foot rises to a clearance c: times 1 - s(c / length_m), s(u) = 3 u^2 - 2 u^3."""
 
     rule: Literal["fade"]
     length_m: Positive  #: clearance at which no torque is left
@@ -170,23 +149,16 @@ class FadeGate:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Flight:
-    """Springs and dampers that the motors imitate at both joints while the foot is off the floor.
-
-    They pull the leg back to its start pose, within the motors' peak torque.
-    """
-
-    __pydantic_config__ = _STRICT
+class Flight(Strict):
+    """Springs and dampers that the motors imitate to pull the leg to its start pose in flight, within peak torque."""
 
     stiffness_n_m_per_rad: Positive
     damping_n_m_s_per_rad: NotNegative
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Controller:
+class Controller(Strict):
     """What the paper's final text leaves open about the virtual controller (section II-B)."""
-
-    __pydantic_config__ = _STRICT
 
     #: L0, rest length of the virtual spring; 10 m in a passage missing from the final text
     rest_length_m: Positive = 10.0
@@ -196,10 +168,8 @@ class Controller:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Simulation:
+class Simulation(Strict):
     """Integration of the equations of motion."""
-
-    __pydantic_config__ = _STRICT
 
     integrator: Literal["Euler", "RK4", "implicitfast", "implicit"]  #: MuJoCo's integrator
     timestep_s: Positive  #: step of the integrator
@@ -247,12 +217,12 @@ class Simulation:
 
 
 def _whole(number: float) -> bool:
-    """Whether a number is whole but for rounding."""
+    """Return whether a number is whole but for rounding."""
     return math.isfinite(number) and abs(number - round(number)) < 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Calibration:
+class Calibration(Strict):
     """Everything that a jump depends on besides the robot; every result names its calibration.
 
     Example:
@@ -263,8 +233,6 @@ class Calibration:
         >>> slippery.label
         'slippery-3'
     """
-
-    __pydantic_config__ = _STRICT
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]+$")]
     version: Annotated[int, Field(ge=1)]
@@ -293,15 +261,13 @@ _LATER = {
     "drive": ("knee_torque_scale", "regeneration_share", "standby_power_w", "efficiency"),
     "controller": ("weight", "flight"),
     "simulation": ("control_period_s", "delay_s", "positions_read"),
-}
-"""Fields that calibrations did not always have, by table."""
+}  #: Fields that calibrations did not always have, by table.
 
 
 def calibration_values(calibration: Calibration) -> dict[str, Any]:
-    """Every value of a calibration as JSON has it; ``calibration_of`` reads it back.
+    """Return every value of a calibration as JSON has it, for ``calibration_of``.
 
-    A field that calibrations did not always have is left out at its default, so that studies stored before it came
-    keep their hash.
+    Fields in ``_LATER`` are left out at their defaults, so that studies stored before keep their hash.
     """
     values: dict[str, Any] = json.loads(json.dumps(asdict(calibration)))
     for table, names in _LATER.items():
@@ -313,21 +279,19 @@ def calibration_values(calibration: Calibration) -> dict[str, Any]:
 
 
 def calibration_names() -> tuple[str, ...]:
-    """Names of the calibrations shipped with the package, the default first."""
-    folder = resources.files("pareto_monoped") / "data" / "calibrations"
-    names = sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
+    """Return names of the calibrations shipped with the package, the default first."""
+    names = sorted(entry.name.removesuffix(".toml") for entry in _SHIPPED.iterdir() if entry.name.endswith(".toml"))
     return (DEFAULT, *(name for name in names if name != DEFAULT))
 
 
 def earlier_calibrations() -> tuple[str, ...]:
-    """Labels of the earlier versions that are shipped for comparison, such as ``reference-1``."""
-    folder = resources.files("pareto_monoped") / "data" / "calibrations" / "earlier"
-    return tuple(sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir()))
+    """Return labels of the earlier versions that are shipped for comparison, such as ``reference-1``."""
+    return tuple(sorted(entry.name.removesuffix(".toml") for entry in (_SHIPPED / "earlier").iterdir()))
 
 
 @cache
 def _present_labels() -> Mapping[str, str]:
-    """Label of each shipped calibration's present version, such as ``reference-3`` -> its name."""
+    """Return the label of each shipped calibration's present version, such as ``reference-3`` -> its name."""
     return {load_calibration(name).label: name for name in calibration_names()}
 
 
@@ -338,12 +302,8 @@ def _is_path(name_or_path: str) -> bool:
 def require_calibration_name(name_or_path: str, *, key: str = "calibration") -> None:
     """Refuse what is neither the name or label of a shipped calibration nor a file, which is not opened.
 
-    Args:
-        name_or_path: the name.
-        key: where it was given, for the message.
-
     Raises:
-        CalibrationError: an unknown name.
+        CalibrationError: an unknown name; the message begins with ``key``.
     """
     if _is_path(name_or_path) or name_or_path in calibration_names() or name_or_path in earlier_calibrations():
         return
@@ -353,7 +313,7 @@ def require_calibration_name(name_or_path: str, *, key: str = "calibration") -> 
 
 
 def load_calibration(name_or_path: str = DEFAULT) -> Calibration:
-    """A calibration by its name, or from a user's TOML file (anything with a slash or ending in ``.toml``).
+    """Return a calibration by its name, or from a user's TOML file (anything with a slash or ending in ``.toml``).
 
     A name means the present version; a label (``reference-1``) means that version, the present one or an earlier one.
 
@@ -364,11 +324,9 @@ def load_calibration(name_or_path: str = DEFAULT) -> Calibration:
     if _is_path(name_or_path):
         path = Path(name_or_path)
     elif name := name_or_path if name_or_path in calibration_names() else _present_labels().get(name_or_path):
-        path = Path(str(resources.files("pareto_monoped") / "data" / "calibrations" / f"{name}.toml"))
+        path = Path(str(_SHIPPED / f"{name}.toml"))
     else:
-        path = Path(
-            str(resources.files("pareto_monoped") / "data" / "calibrations" / "earlier" / f"{name_or_path}.toml")
-        )
+        path = Path(str(_SHIPPED / "earlier" / f"{name_or_path}.toml"))
     values: dict[str, Any] = read_toml(path, what="calibration file", error=CalibrationError)
     return calibration_of(values, source=f"calibration file {path.name!r}")
 
@@ -376,12 +334,7 @@ def load_calibration(name_or_path: str = DEFAULT) -> Calibration:
 def calibration_of(
     values: Mapping[str, Any], *, source: str, error: type[InputError] = CalibrationError
 ) -> Calibration:
-    """A calibration from plain values, nested as in its file.
-
-    Args:
-        values: every value of the calibration.
-        source: where they come from, the first words of a message.
-        error: which kind of ``InputError`` to raise.
+    """Return a calibration from plain values, nested as in its file; ``source`` begins error messages.
 
     Raises:
         CalibrationError: (or ``error``) a field is missing, unknown or out of range.

@@ -7,26 +7,16 @@ from pareto_monoped.errors import CalibrationError, InputError, complaint
 
 DEFAULT = "reference"
 _PAPER = "paper"
-OWN_CALIBRATION = "own:"
-"""In a study, what the name of a calibration begins with that no file and no shipped name leads to: its values stand in
-the study's database alone."""
+OWN_CALIBRATION = "own:"  #: How the name of a calibration begins whose values stand only in the study's database.
 
 
 def rules_for(
     calibration: str, asked: RuleSet | None = None, *, key: str = "rules", error: type[InputError] = CalibrationError
 ) -> RuleSet:
-    """The gearbox rules that go with a calibration.
+    """Return the rules ``asked``, or the gearbox rules that go with a calibration, given by name or path.
 
-    The calibration ``paper`` is fitted to the paper's table with the paper's gearboxes, and means the rules ``paper``.
-
-    Args:
-        calibration: its name, or the path of a file.
-        asked: the rules that were asked for, if any.
-        key: where they were, for a message.
-        error: which kind of ``InputError`` to raise.
-
-    Raises:
-        CalibrationError: (or ``error``) other rules than ``paper`` were asked for with the calibration ``paper``.
+    The calibration ``paper`` is fitted with the paper's gearboxes; any other rules raise ``error`` (its line begins
+    with ``key``).
     """
     if not _is_paper(calibration):
         return DEFAULT_RULES if asked is None else asked
@@ -37,13 +27,10 @@ def rules_for(
 
 
 def strength_for(calibration: str) -> bool:
-    """Whether a study under a calibration asks for strength unless its file says otherwise.
-
-    The calibration ``paper`` follows the paper's simulation, whose robot has no end stops.
-    """
+    """Return whether a study asks for strength by default: not under ``paper``, whose robot has no end stops."""
     return not _is_paper(calibration)
 
 
 def _is_paper(calibration: str) -> bool:
-    """Whether a name is that of the calibration ``paper``, with or without a version."""
+    """Return whether a name is that of the calibration ``paper``, with or without a version."""
     return re.fullmatch(rf"{_PAPER}(-\d+)?", calibration) is not None

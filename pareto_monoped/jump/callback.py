@@ -1,14 +1,9 @@
 """The controller inside MuJoCo's step: many steps of many jumps without going back to Python.
 
 MuJoCo calls ``mjcb_control`` in every step, after positions and speeds are known and before forces are (its
-documentation, "Programming, Simulation, Simulation loop"). A compiled callback keeps the batch's threads free of
-Python. The controller's record of a jump is the user data of its simulation and thus part of MuJoCo's own state, so
-that the callback needs no memory of its own and works on any thread. It reads and writes the state through MuJoCo's C
-functions.
-
-MuJoCo's own log, switched off while jumps run: it would be a file ``MUJOCO_LOG.TXT`` in the folder one works in.
-
-What MuJoCo warns of is counted in every simulation, and stands in the status and the reason of the jump.
+documentation, "Programming, Simulation, Simulation loop"). The controller's record of a jump is the user data of its
+simulation and thus part of MuJoCo's own state, so that the compiled callback needs no memory of its own and works on
+any thread. It reads and writes the state through MuJoCo's C functions.
 """
 
 import ctypes
@@ -16,6 +11,7 @@ import threading
 import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -31,35 +27,66 @@ from pareto_monoped.jump import controller
 from pareto_monoped.jump.controller import control
 from pareto_monoped.jump.controller_record import RECORD, RECORD_NUMBERS
 
-_lock = threading.Lock()
-_users = _quiet_users = 0
-_quiet_before = (True, True)
+
+@dataclass(slots=True)
+class _Setting:
+    """A setting of the process that its first user makes and its last one takes back, on whatever threads."""
+
+    make: Callable[[], Any]  #: returns what was set before
+    restore: Callable[[Any], object]
+    lock: threading.Lock = field(default_factory=threading.Lock)
+    users: int = 0
+    before: Any = None
+
+    @contextmanager
+    def used(self) -> Iterator[None]:
+        with self.lock:
+            if self.users == 0:
+                self.before = self.make()
+            self.users += 1
+        try:
+            yield
+        finally:
+            with self.lock:
+                self.users -= 1
+                if self.users == 0:
+                    self.restore(self.before)
+
+
+def _set_log(wanted: tuple[bool, bool] = (False, False)) -> tuple[bool, bool]:
+    """Let MuJoCo write to standard output and to its file, or not, and return whether it did before."""
+    config = mujoco.MjLogConfig.get()
+    before = (config.logto_console, config.logto_file)
+    config.logto_console, config.logto_file = wanted
+    config.set()
+    return before
+
+
+def _install() -> Any:
+    before = mujoco.get_mjcb_control()
+    mujoco.set_mjcb_control(_compiled())
+    return before
+
+
+_LOG, _CALLBACK = _Setting(_set_log, _set_log), _Setting(_install, mujoco.set_mjcb_control)
 
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Let MuJoCo write neither to a file nor to standard output; what was set before holds again after the last user.
-
-    Also a decorator.
-    """
-    global _quiet_users, _quiet_before
-
-    with _lock:
-        if _quiet_users == 0:
-            config = mujoco.MjLogConfig.get()
-            _quiet_before = (config.logto_console, config.logto_file)
-            config.logto_console = config.logto_file = False
-            config.set()
-        _quiet_users += 1
-    try:
+    """Let MuJoCo write neither to ``MUJOCO_LOG.TXT`` nor to standard output; the last user restores the settings."""
+    with _LOG.used():
         yield
-    finally:
-        with _lock:
-            _quiet_users -= 1
-            if _quiet_users == 0:
-                config = mujoco.MjLogConfig.get()
-                config.logto_console, config.logto_file = _quiet_before
-                config.set()
+
+
+@contextmanager
+def controlled() -> Iterator[None]:
+    """Let the controller act in every simulation whose user data is a controller's record, and in no other.
+
+    A process has only one callback; the last user restores the earlier one. If MuJoCo's library is not where its
+    package has it, this raises ``SimulationError``.
+    """
+    with _CALLBACK.used(), quiet():
+        yield
 
 
 _POSITION = types.CPointer(types.float64)
@@ -75,38 +102,9 @@ _WRITTEN = int(mujoco.mjtState.mjSTATE_CTRL) | _USER
 _READ = _POSITIONS | int(mujoco.mjtState.mjSTATE_QVEL) | _WRITTEN
 _JOINTS = 2
 
-_before: Callable[..., object] | None = None
-
-
-@contextmanager
-def controlled() -> Iterator[None]:
-    """Let the controller act in every simulation whose user data is a controller's record, and in no other.
-
-    A process has only one callback. The one that was installed before is restored when the last user leaves.
-
-    Raises:
-        SimulationError: MuJoCo's library is not where its package has it.
-    """
-    global _users, _before
-    callback = _compiled()
-    with _lock:
-        if _users == 0:
-            _before = mujoco.get_mjcb_control()
-            mujoco.set_mjcb_control(callback)
-        _users += 1
-    try:
-        with quiet():
-            yield
-    finally:
-        with _lock:
-            _users -= 1
-            if _users == 0:
-                mujoco.set_mjcb_control(_before)
-
 
 @lru_cache(maxsize=1)
 def _compiled() -> Any:
-    """The callback as a C function."""
     library = ctypes.CDLL(str(_library()))
     for name in ("mj_getState", "mj_setState", "mj_stateSize"):
         llvmlite.binding.add_symbol(name, ctypes.cast(getattr(library, name), ctypes.c_void_p).value)
@@ -119,7 +117,6 @@ def _origin(source: Path) -> int:
 
 
 def _library() -> Path:
-    """The shared library that MuJoCo's package loads."""
     folder = Path(mujoco.__file__).parent
     for pattern in ("libmujoco.so*", "libmujoco*.dylib", "mujoco.dll"):
         for path in sorted(folder.glob(pattern)):
@@ -128,10 +125,9 @@ def _library() -> Path:
 
 
 def _controller(origin: int) -> Callable[[Any, Any], None]:
-    """``mjcb_control``, not yet compiled; MuJoCo calls it in every step of every simulation of the process.
+    """Return ``mjcb_control``, not yet compiled, which MuJoCo calls in every step of every simulation of the process.
 
-    Args:
-        origin: closed over, so that numba does not load a callback from disk that was compiled with another controller.
+    It closes over ``origin`` so that numba loads no callback from disk that was compiled with another controller.
     """
 
     def act(model: Any, data: Any) -> None:

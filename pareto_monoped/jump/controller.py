@@ -1,45 +1,32 @@
-"""The virtual controller and the bookkeeping of one jump, compiled by numba.
+"""The virtual controller and the bookkeeping of one jump, compiled by numba, which importing this module imports.
 
-``control`` is called at the start of every step. It books the step just made, ends a jump that is over, and sets the
-torques of the next step. Everything it knows about a jump besides positions and speeds is in one
-``controller_record.RECORD``, which ``callback`` keeps in the user data of the simulation.
-
-Importing this module imports numba, so import it where a simulation starts. All constants stay in this file because
-numba recompiles a function only if its own file changes, or the type of an argument, such as the record.
+``control`` is called at the start of every step. Everything it knows about a jump besides positions and speeds is in
+one ``controller_record.RECORD``, which ``callback`` keeps in the user data of the simulation. All constants stay in
+this file because numba recompiles a function only if its own file or the type of an argument changes.
 """
 
 import math
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from pareto_monoped.compute.compiled import compiled
-from pareto_monoped.design import GRAVITY_M_PER_S2
+from pareto_monoped.design import GRAVITY_M_PER_S2, Floats
 from pareto_monoped.jump.controller_record import TOUCH_M
-
-Floats = NDArray[np.float64]
 
 HIP, KNEE = 0, 1
 
 RUNNING, FLYING, APEX, NO_LIFT_OFF, SANK, DIVERGED, TIMEOUT = range(7)
-"""Values of ``status``; the jump goes on up to and including ``FLYING``."""
+"""``status``; a jump goes on through ``FLYING``."""
 
-SANK_M = 0.1
-"""A base this low has fallen: half its actuators' diameter is 0.05 m."""
-SPEED_LIMIT = 1e4
-"""Speed of a joint or slide (rad/s, m/s) beyond which the simulation has failed."""
+SANK_M = 0.1  #: A base this low has fallen: half its actuators' diameter is 0.05 m.
+SPEED_LIMIT = 1e4  #: Speed of a joint or slide (rad/s, m/s) beyond which the simulation has failed.
 
 
 @compiled
 def control(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
     """Book the last step of a jump, end the jump if it is over, and set the torques of its next step.
 
-    Args:
-        q: joint positions at the start of the step, shape (nv,): slides (x if the base slides, z), hip, knee.
-        v: joint speeds, shape (nv,).
-        ctrl: torques of hip and knee, shape (2,); written.
-        jump: a ``RECORD``; written.
+    ``q`` and ``v``, shape (nv,), are positions and speeds of slides (x if the base slides, z), hip and knee at the
+    start of the step. The torques ``ctrl`` of hip and knee and the ``RECORD`` are written.
     """
     if jump.stages > 1.0:
         # A Runge-Kutta integrator calls once per stage; the torque of the first stage is held.
@@ -57,7 +44,7 @@ def control(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
 
 @compiled
 def _fine(q: Floats, v: Floats) -> bool:
-    """Whether a state is finite and slower than ``SPEED_LIMIT``."""
+    """Return whether a state is finite and slower than ``SPEED_LIMIT``."""
     fine = True
     for k in range(v.shape[0]):
         fine = fine and math.isfinite(q[k]) and abs(v[k]) < SPEED_LIMIT
@@ -156,7 +143,6 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
 
 @compiled
 def _direction(angle: float) -> tuple[float, float]:
-    """Sine and cosine."""
     return math.sin(angle), math.cos(angle)
 
 
@@ -175,7 +161,7 @@ def _read_back(q: Floats, v: Floats, jump: Any) -> tuple[float, float, float]:
 def _foot(
     thigh: tuple[float, float], shank: tuple[float, float], jump: Any
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Vectors (x, z) from hip to foot and from knee to foot; the links have these sines and cosines."""
+    """Return vectors (x, z) from hip to foot and from knee to foot; the links have these sines and cosines."""
     x, z = -jump.shank_length_m * shank[0], -jump.shank_length_m * shank[1]
     return (-jump.thigh_length_m * thigh[0] + x, -jump.thigh_length_m * thigh[1] + z), (x, z)
 
@@ -196,7 +182,7 @@ def _note_state(q: Floats, v: Floats, thigh: tuple[float, float], shank: tuple[f
 
 @compiled
 def _gate(clearance: float, touching: bool, jump: Any) -> float:
-    """The share of the torque that passes at a foot clearance; notes lift-off."""
+    """Return the share of the torque that passes at a foot clearance; notes lift-off."""
     length = jump.fade_length_m
     if length > 0.0:
         u: float = min(max(clearance / length, 0.0), 1.0)
@@ -216,7 +202,7 @@ def _gate(clearance: float, touching: bool, jump: Any) -> float:
 
 @compiled
 def _release(knee: float, jump: Any) -> float:
-    """The share of the knee's torque before its lower stop: a ramp over ``knee_release_rad`` down to zero."""
+    """Return the share of the knee's torque before its lower stop: a ramp over ``knee_release_rad`` down to zero."""
     if jump.knee_release_rad == 0.0:
         return 1.0
     share: float = min(max((knee - jump.lower_stop_rad[KNEE]) / jump.knee_release_rad, 0.0), 1.0)
@@ -248,16 +234,9 @@ def _command(wanted: tuple[float, float], share: tuple[float, float], speed: tup
 def _virtual_leg(
     foot: tuple[float, float], shank: tuple[float, float], speed: tuple[float, float], jump: Any
 ) -> tuple[float, float]:
-    """Torques of virtual spring, damper and torsional spring (paper, section II-B), before any limit.
+    """Return the torques of virtual spring, damper and torsional spring (paper, section II-B), before any limit.
 
-    Args:
-        foot: vector (x, z) from hip to foot.
-        shank: vector (x, z) from knee to foot.
-        speed: of hip and knee.
-        jump: the record.
-
-    Returns:
-        Torques of hip and knee.
+    ``foot`` and ``shank`` are the vectors (x, z) from hip to foot and from knee to foot.
     """
     # F_l, tau_t, F_x, F_z and tau = J^T F of the paper; alpha is positive with the foot behind the base.
     # J: d rx / d hip = rz, d rz / d hip = -rx; d rx / d knee = shank_z, d rz / d knee = -shank_x.
@@ -277,7 +256,7 @@ def _virtual_leg(
 
 @compiled
 def _held_pose(angle: tuple[float, float], speed: tuple[float, float], jump: Any) -> tuple[float, float]:
-    """Torques of hip and knee that pull the leg back to its start pose in flight."""
+    """Return torques of hip and knee that pull the leg back to its start pose in flight."""
     stiffness, damping = jump.flight_stiffness_n_m_per_rad, jump.flight_damping_n_m_s_per_rad
     return (
         stiffness * (jump.start_rad[HIP] - angle[HIP]) - damping * speed[HIP],
@@ -287,7 +266,7 @@ def _held_pose(angle: tuple[float, float], speed: tuple[float, float], jump: Any
 
 @compiled
 def _limited(torque: float, speed: float, jump: Any, joint: int) -> float:
-    """``torque`` within the motor's peak torque and, while the motor drives, within its voltage-speed line."""
+    """Return ``torque`` within the motor's peak torque and, while the motor drives, within its voltage-speed line."""
     limit: float = jump.torque_limit_n_m[joint]
     upper, lower = limit, -limit
     if jump.voltage_limit > 0.0:
@@ -305,7 +284,7 @@ def _limited(torque: float, speed: float, jump: Any, joint: int) -> float:
 
 @compiled
 def _delivered(torque: float, speed: float, jump: Any, joint: int) -> float:
-    """The torque that reaches the joint: the load-dependent friction of gears and chain opposes the motion."""
+    """Return the torque that reaches the joint: the load-dependent friction of gears and chain opposes the motion."""
     loss: float = jump.loss[joint]
     limit: float = jump.torque_limit_n_m[joint]
     if loss == 0.0 or torque == 0.0:
@@ -316,10 +295,7 @@ def _delivered(torque: float, speed: float, jump: Any, joint: int) -> float:
 
 @compiled
 def _book(jump: Any, speed: tuple[float, float]) -> None:
-    """Add up the step just made.
-
-    Work is torque times the mean of the speeds at both ends of the step, or times the speed at its start.
-    """
+    """Add up the step just made: its work is torque times the mean speed of the step, or the speed at its start."""
     timestep = jump.timestep_s
     for joint in range(2):
         torque, start = jump.motor_torque_n_m[joint], jump.speed_rad_per_s[joint]
@@ -343,13 +319,12 @@ def _book(jump: Any, speed: tuple[float, float]) -> None:
 
 @compiled
 def _loads(v: Floats, jump: Any) -> None:
-    """Loads in the step just made, from its mean acceleration, by Newton's and Euler's laws of the planar leg.
+    """Book the loads in the step just made, from its mean acceleration, by Newton's and Euler's laws of the planar leg.
 
-    The floor's force accelerates the whole robot. An end stop has what is left of the moment about its joint of all
-    that hangs below it, less those of actuator, floor and viscous friction; Coulomb friction is counted with the stop.
-    A gearbox transmits the motor's torque less what accelerates the rotor, and the chain transmits the knee's torque
-    less what accelerates everything before its sprocket. On a vertical guide the floor's force has an unknown part in
-    x, which is left out.
+    The floor's force accelerates the whole robot. An end stop takes the moment about its joint of all that hangs below
+    it, less the torques of actuator, floor and viscous friction; Coulomb friction is counted with the stop. A gearbox
+    transmits the motor's torque less what accelerates the rotor; the chain transmits the knee's torque less what
+    accelerates everything before its sprocket. On a vertical guide the floor's force in x is unknown and left out.
     """
     nv, timestep = v.shape[0], jump.timestep_s
     hip, knee = (jump.directions[0], jump.directions[1]), (jump.directions[2], jump.directions[3])
@@ -401,7 +376,7 @@ def _loads(v: Floats, jump: Any) -> None:
 
 @compiled
 def _turned(vector: Any, direction: tuple[float, float]) -> tuple[float, float]:
-    """A vector (x, z) of a body frame in the world: turned about +y by the angle with this sine and cosine."""
+    """Return a vector (x, z) of a body frame in the world: turned about +y by the angle with this sine and cosine."""
     sin, cos = direction
     return cos * vector[0] + sin * vector[1], cos * vector[1] - sin * vector[0]
 
@@ -410,7 +385,7 @@ def _turned(vector: Any, direction: tuple[float, float]) -> tuple[float, float]:
 def _accelerated(
     origin: tuple[float, float], arm: tuple[float, float], speed: float, acceleration: float
 ) -> tuple[float, float]:
-    """Acceleration of the end of ``arm`` on a body that turns about +y, from that of its origin."""
+    """Return the acceleration of the end of ``arm`` on a body that turns about +y, from that of its origin."""
     centripetal = speed * speed
     return (
         origin[0] + acceleration * arm[1] - centripetal * arm[0],
@@ -420,5 +395,5 @@ def _accelerated(
 
 @compiled
 def _moment(arm: tuple[float, float], force: tuple[float, float]) -> float:
-    """Moment about +y of a force at the end of ``arm``."""
+    """Return the moment about +y of a force at the end of ``arm``."""
     return arm[1] * force[0] - arm[0] * force[1]

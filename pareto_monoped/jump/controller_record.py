@@ -1,18 +1,24 @@
 """What the controller knows about one jump: settings, robot, memory and measures, as one record of numbers.
 
-A measure that the record holds under its own name, or with "hip" or "knee" left out of the name of a pair, is taken
-from here as it is (``jump.evaluate``). Importing this module does not import numba, unlike the controller.
+``jump.evaluate`` takes a measure from here if the record holds it under its own name, or, as a pair, without "hip" or
+"knee". Unlike the controller, this module does not import numba.
 """
+
+from typing import Any
 
 import numpy as np
 
-TOUCH_M = 1e-9
-"""Clearance that still counts as touching, because of rounding in the start pose."""
-MOST_DELAY = 8
-"""Control periods that a command can be late: 3 ms (bus and driver) at a period of 0.5 ms, and two more."""
+TOUCH_M = 1e-9  #: Clearance that still counts as touching, because of rounding in the start pose.
+MOST_DELAY = 8  #: Control periods that a command can be late: 3 ms (bus and driver) at 0.5 ms each, and two more.
 
 _ONE, _BOTH, _STATE = np.float64, (np.float64, (2,)), (np.float64, (4,))
 _COMMANDS = (np.float64, (MOST_DELAY + 1, 4))
+
+
+def _each(kind: Any, *names: str) -> list[tuple[str, Any]]:
+    return [(name, kind) for name in names]
+
+
 RECORD = np.dtype(
     [
         ("status", _ONE),  # one of RUNNING ... TIMEOUT
@@ -25,23 +31,12 @@ RECORD = np.dtype(
         ("step_limit", _ONE),
         ("stages", _ONE),  # calls per step: 4 for a Runge-Kutta integrator
         ("fade_length_m", _ONE),  # 0: torque only while the foot touches the floor
-        ("latch", _ONE),
-        ("loss_speed_rad_per_s", _ONE),
-        ("voltage_limit", _ONE),
-        ("lags", _ONE),
-        ("mean_speed", _ONE),
-        ("regeneration_share", _ONE),
+        *_each(_ONE, "latch", "loss_speed_rad_per_s", "voltage_limit", "lags", "mean_speed", "regeneration_share"),
         # The robot.
-        ("thigh_length_m", _ONE),
-        ("shank_length_m", _ONE),
-        ("foot_radius_m", _ONE),
-        ("stiffness_n_per_m", _ONE),
-        ("damping_n_s_per_m", _ONE),
-        ("torsional_stiffness_n_m_per_rad", _ONE),
+        *_each(_ONE, "thigh_length_m", "shank_length_m", "foot_radius_m"),
+        *_each(_ONE, "stiffness_n_per_m", "damping_n_s_per_m", "torsional_stiffness_n_m_per_rad"),
         ("weight_n", _ONE),  # the term m g of F_z
-        ("torque_limit_n_m", _BOTH),
-        ("no_load_speed_rad_per_s", _BOTH),
-        ("corner_speed_rad_per_s", _BOTH),
+        *_each(_BOTH, "torque_limit_n_m", "no_load_speed_rad_per_s", "corner_speed_rad_per_s"),
         ("loss", _BOTH),  # share of the torque lost in gears and chain
         ("heat_w_per_n2_m2", _BOTH),  # Joule heat per squared joint torque
         ("knee_release_rad", _ONE),  # 0: the knee's torque does not fade before its stop
@@ -57,10 +52,7 @@ RECORD = np.dtype(
         ("armature_kg_m2", _BOTH),
         ("coupling_kg_m2", _ONE),  # of the knee's turning parts with the thigh's rotation
         ("rotor_kg_m2", _BOTH),  # of what turns at the motor's speed, times the ratio: torque per motor acceleration
-        ("ratio", _BOTH),
-        ("joint_damping_n_m_s_per_rad", _BOTH),
-        ("lower_stop_rad", _BOTH),
-        ("upper_stop_rad", _BOTH),
+        *_each(_BOTH, "ratio", "joint_damping_n_m_s_per_rad", "lower_stop_rad", "upper_stop_rad"),
         ("sprocket_radius_m", _ONE),
         # What the controller remembers from step to step.
         ("stage", _ONE),
@@ -71,25 +63,18 @@ RECORD = np.dtype(
         ("stood", _ONE),  # the foot has touched the floor
         ("off_floor", _ONE),  # the foot has left the floor after it has stood
         ("touched", _ONE),  # contact one step ago
-        ("energy_j", _BOTH),
-        ("absorbed_j", _BOTH),
-        ("drive_loss_j", _BOTH),
+        *_each(_BOTH, "energy_j", "absorbed_j", "drive_loss_j"),
         ("joule_heat_j", _ONE),
         ("winding_heat_j", _BOTH),
         ("electrical_energy_j", _ONE),
-        ("peak_torque_n_m", _BOTH),
-        ("peak_speed_rad_per_s", _BOTH),
-        ("peak_power_w", _BOTH),
+        *_each(_BOTH, "peak_torque_n_m", "peak_speed_rad_per_s", "peak_power_w"),
         ("active_steps", _ONE),
         ("saturated_steps", _BOTH),
         ("peak_gear_torque_n_m", _BOTH),
         ("peak_chain_tension_n", _ONE),
         ("peak_stop_torque_n_m", _BOTH),
         ("peak_beyond_stop_rad", _BOTH),  # by which a joint goes beyond an end of its range
-        ("stop_energy_j", _ONE),
-        ("peak_foot_force_n", _ONE),
-        ("peak_knee_force_n", _ONE),
-        ("drift_m", _ONE),
+        *_each(_ONE, "stop_energy_j", "peak_foot_force_n", "peak_knee_force_n", "drift_m"),
         ("speed_rad_per_s", _BOTH),  # at the start of the current step
         ("motor_torque_n_m", _BOTH),  # during the current step, at the joint before losses
         ("joint_torque_n_m", _BOTH),  # the same after losses
@@ -101,7 +86,5 @@ RECORD = np.dtype(
         ("directions", _STATE),  # sine and cosine of the angles of thigh and shank there
     ],
     align=True,
-)
-"""Everything the controller knows about one jump; pairs are hip, knee. MuJoCo's user data must be float64."""
-RECORD_NUMBERS = RECORD.itemsize // 8
-"""Length of a record in MuJoCo's user data."""
+)  #: Everything the controller knows about one jump; pairs are hip, knee. MuJoCo's user data must be float64.
+RECORD_NUMBERS = RECORD.itemsize // 8  #: Length of a record in MuJoCo's user data.

@@ -2,10 +2,8 @@
 
 An ``EndStop`` becomes a joint limit of MuJoCo (``model.spring_fields``). Let u be the compression over the full width
 w, D the impedance, and A the joint's inverse inertia at the zero pose. In a slow compression the stop pushes back with
-the torque k w u^3 (1 - D) / (1 - D u). Its damping is c u (1 - D) / (1 - D u), and it adds the virtual inertia
-D u / (1 - D u) / A. Beyond w, damping and virtual inertia stay as at w, and the torque grows in proportion.
-
-How an impact leaves an end stop, compiled by numba. Importing this module imports numba.
+the torque k w u^3 (1 - D) / (1 - D u). Its damping is c u (1 - D) / (1 - D u), and it adds the virtual inertia D u / (1
+- D u) / A. Beyond w, damping and virtual inertia stay as at w, and the torque grows in proportion.
 """
 
 import functools
@@ -13,28 +11,24 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.compute.compiled import compiled
+from pareto_monoped.design import Floats
 from pareto_monoped.jump.calibration import EndStop, Joints
 from pareto_monoped.leg.stops import JointStop
 from pareto_monoped.robot.population import RobotArrays
 
-Floats = NDArray[np.float64]
-EndStops = tuple[EndStop | None, EndStop | None]
-"""Of hip and knee; None for a joint that turns freely."""
+EndStops = tuple[EndStop | None, EndStop | None]  #: Of hip and knee; None for a joint that turns freely.
 
-IMPACT_M_PER_S = 2.0
-"""Speed at the bumper of the impact that gives back what the elastomer does; knees meet their stop with about that."""
-IMPACT_KG_M2 = 0.031
-"""Inertia of that impact: 1 / A of the knee, the median of 60 random designs (0.019 to 0.048)."""
+IMPACT_M_PER_S = 2.0  #: Speed at the bumper for which the elastomer's rebound holds, about that of knees at their stop.
+IMPACT_KG_M2 = 0.031  #: Inertia of that impact: 1 / A of the knee, the median of 60 random designs (0.019 to 0.048).
 IMPEDANCE = 0.6
 """D of the stops of parts. The slow torque fits that of the part about as well with any D from 0.1 to 0.6. By
 simulation, this one makes heights and energies depend little on the step (docs/model.md)."""
 
 
 def end_stops(robots: RobotArrays, joints: Joints) -> EndStops:
-    """The end stops of both joints."""
+    """Return the end stops of both joints."""
     if joints.stops == "parts":
         return simulated(robots.stops.hip), simulated(robots.stops.knee)
     return joints.hip_stop, joints.knee_stop
@@ -42,10 +36,9 @@ def end_stops(robots: RobotArrays, joints: Joints) -> EndStops:
 
 @functools.lru_cache(maxsize=16)
 def simulated(stop: JointStop) -> EndStop:
-    """The end stop that behaves like a part.
+    """Return the end stop that behaves like a part: its slow torque is the least-squares fit over the bumper's travel.
 
-    Over the travel of the bumper, its slow torque is as close to that of the part as can be, by least squares. Its
-    damping gives back the share of an impact's energy that the elastomer does (ISO 4662).
+    Its damping gives back the share of an impact's energy that the elastomer does (ISO 4662).
     """
     beyond = np.linspace(0.0, stop.travel_rad, 201)
     soft = EndStop(
@@ -69,14 +62,14 @@ def simulated(stop: JointStop) -> EndStop:
 
 
 def slow_torque_n_m(stop: EndStop, beyond_rad: Floats) -> Floats:
-    """Torque with which an end stop pushes back slowly at angles beyond its end of the range."""
+    """Return the torque with which an end stop pushes back slowly at angles beyond its end of the range."""
     d = stop.impedance * np.clip(np.asarray(beyond_rad) / stop.width_rad, 0.0, 1.0)
     share = np.square(d / stop.impedance) * (1.0 - stop.impedance) / (1.0 - d)
     return np.asarray(stop.stiffness_n_m_per_rad * beyond_rad * share)
 
 
 def rebound_rad_per_s(stop: EndStop, speed_rad_per_s: float, inertia_kg_m2: float) -> float:
-    """Speed at which a free inertia leaves a stop that it met at a speed, see ``rebound.rebound``.
+    """Return the speed at which a free inertia leaves a stop that it met at a speed, see ``rebound``.
 
     The stop pushes and never pulls.
     """
@@ -96,15 +89,9 @@ def _deceleration(
 
 @compiled
 def rebound(speed: float, width: float, full: float, stiffness: float, damping: float, inertia: float) -> float:
-    """Speed in rad/s at which a free inertia leaves a stop that it met at a speed, by Runge and Kutta's method.
+    """Return the speed at which a free inertia leaves a stop that it met at ``speed``, by Runge and Kutta's method.
 
-    Args:
-        speed: of the inertia when it meets the stop, in rad/s.
-        width: of the stop, in rad.
-        full: its impedance at its full width.
-        stiffness: in N m/rad.
-        damping: in N m s/rad.
-        inertia: in kg m2.
+    All quantities are in SI units; ``full`` is the impedance at the full ``width``.
     """
     r, v = 0.0, speed
     h = 0.005 * width / speed

@@ -14,6 +14,7 @@ from pareto_monoped.design import (
     LEAST,
     MOST,
     NAMES,
+    Floats,
     columns,
     complete,
     complete_control,
@@ -28,8 +29,6 @@ from pareto_monoped.robot.population import JointStops, RobotArrays, robot_array
 from pareto_monoped.robot.units import JOINTS
 from pareto_monoped.strength.factors import safeties, strength_factors
 from pareto_monoped.strength.joint import LOAD_NAMES, loads_of
-
-Floats = NDArray[np.float64]
 
 STATUSES = ("ok", "bad_input", "no_gearbox", "cannot_stand", "no_lift_off", "timeout", "diverged")
 """How a jump can end. Every status but ``ok`` comes with a reason, and without height and energy."""
@@ -50,38 +49,27 @@ class Evaluations(JumpMeasures):
         return np.asarray(self.status == "ok")
 
     def of(self, name: str) -> Floats:
-        """The measure of that name, shape (n,)."""
+        """Return the measure of that name, shape (n,)."""
         values: Floats = getattr(self, name)
         return values
 
     def as_columns(self) -> dict[str, NDArray[np.generic]]:
-        """Column name to values of shape (n,), ``status`` and ``reason`` first."""
+        """Return column name to values of shape (n,), ``status`` and ``reason`` first."""
         values = {field.name: getattr(self, field.name) for field in fields(self)}
         return values | {"reason": np.array(self.reason, dtype=np.str_)}
 
 
 class Evaluator:
-    """Evaluates designs with the actuators of one kit of motors, or of one of several, under one calibration.
+    """Evaluates designs with the actuators of one or several kits of motors under one calibration, on threads.
 
     To the last bit, the result of a design does not depend on the rest of the batch, its order or the number of
-    workers.
-
-    Attributes:
-        actuator_map: ratio -> lightest actuator of both joints or of each, with the first or only kit of motors.
-        actuator_maps: of every kit.
-        calibration: the jump model.
-        workers: threads.
+    workers. ``actuator_map`` is of the first kit, ``actuator_maps`` of every kit.
     """
 
     executor: Executor | None = None  #: what shares out the jumps, see ``jump.shared``; None: these threads do them all
 
     def __init__(
-        self,
-        actuator_map: Maps,
-        calibration: Calibration,
-        workers: int = 1,
-        *,
-        others: Sequence[Maps] = (),
+        self, actuator_map: Maps, calibration: Calibration, workers: int = 1, *, others: Sequence[Maps] = ()
     ) -> None:
         self.actuator_map = actuator_map
         self.actuator_maps = tuple(map(joint_maps, (actuator_map, *others)))
@@ -91,12 +79,10 @@ class Evaluator:
     def __call__(
         self, designs: ArrayLike, motors: ArrayLike | None = None, *, variations: Variations | None = None
     ) -> Evaluations:
-        """Jump with each design.
+        """Jump with each design, shape (n, 7) or (n, number of variables).
 
-        Args:
-            designs: shape (n, 7) or (n, number of variables), see ``design.complete``.
-            motors: which of ``actuator_maps`` each design is built with, shape (n,); the first if None.
-            variations: how each robot departs from its design; its parts carry as much as designed. None: not at all.
+        ``motors`` has the row of ``actuator_maps`` for each design, shape (n,); None means the first. Robots that
+        depart from their designs by ``variations`` have parts that carry as much as designed.
         """
         values = np.atleast_2d(complete(designs))
         table, reasons = _Table(len(values)), _nonsense(values)
@@ -110,11 +96,7 @@ class Evaluator:
         return table.evaluations()
 
     def _evaluate(
-        self,
-        values: Floats,
-        rows_of: Mapping[int, NDArray[np.intp]],
-        table: "_Table",
-        variations: Variations | None,
+        self, values: Floats, rows_of: Mapping[int, NDArray[np.intp]], table: "_Table", variations: Variations | None
     ) -> None:
         """Fill the table; ``rows_of`` has the rows of each kit of motors."""
         built = {
@@ -131,7 +113,7 @@ class Evaluator:
 
 
 def _alike(robots: Mapping[int, RobotArrays]) -> list[list[int]]:
-    """Keys of populations that have the same end stops, and can thus be one population."""
+    """Return keys of populations that have the same end stops, and can thus be one population."""
     groups: dict[JointStops, list[int]] = {}
     for key, population in robots.items():
         groups.setdefault(population.stops, []).append(key)
@@ -139,16 +121,9 @@ def _alike(robots: Mapping[int, RobotArrays]) -> list[list[int]]:
 
 
 def evaluate_robots(robots: RobotArrays, control: Floats, calibration: Calibration, workers: int = 1) -> Evaluations:
-    """Jump with robots that are already built.
+    """Jump with n built robots, each with its control (see ``design.complete_control``).
 
-    Args:
-        robots: n robots.
-        control: of each, see ``design.complete_control``.
-        calibration: the jump model.
-        workers: threads.
-
-    Returns:
-        Without the measures of strength, which are NaN: robots alone do not say which gearboxes they have.
+    The measures of strength are NaN, because robots alone do not say which gearboxes they have.
     """
     table = _Table(len(robots))
     _jump(robots, complete_control(control), calibration, workers, table, np.arange(len(robots)))
@@ -165,7 +140,7 @@ def _add_safeties(values: Floats, maps: JointMaps, table: "_Table", rows: NDArra
 
 
 def _nonsense(values: Floats) -> dict[int, str]:
-    """The rows of ``values`` that are not designs, each with the reason."""
+    """Return the rows of ``values`` that are not designs, each with the reason."""
     with np.errstate(invalid="ignore"):
         wrong = ~((values >= LEAST) & (values <= MOST))
     reasons: dict[int, str] = {}
@@ -233,6 +208,7 @@ def _collect(
     mass = table.columns["mass_kg"][rows]
     rise = records["height_m"] - robots.start_height_m
     active = np.maximum(records["active_steps"], 1.0)
+    travels_rad = np.array([getattr(robots.stops, joint).travel_rad for joint in JOINTS])  # of whole bumpers
     saturated = records["saturated_steps"] / active[:, None]
     measures = _as_recorded(records) | {
         "energy_j": energy,
@@ -246,20 +222,15 @@ def _collect(
         "electrical_energy_j": records["electrical_energy_j"] + drive.standby_power_w * (records["steps"] - 1) * step,
         "sustained_jumps_per_minute": _sustained_per_minute(records, robots.continuous_torque_n_m),
         "peak_stop_torque_n_m": records["peak_stop_torque_n_m"].max(axis=1),
-        **_by_joint("stop_compression_{}", records["peak_beyond_stop_rad"] / _travels_rad(robots)),
+        **_by_joint("stop_compression_{}", records["peak_beyond_stop_rad"] / travels_rad),
         "agility_m_per_s": rise / np.where(ok, (records["steps"] - 1) * step, np.nan),
     }
     for name, values in measures.items():
         table.columns[name][rows[ok]] = values[ok]
 
 
-def _travels_rad(robots: RobotArrays) -> Floats:
-    """Angles beyond the ranges of hip and knee at which their bumpers are fully compressed."""
-    return np.array([getattr(robots.stops, joint).travel_rad for joint in JOINTS])
-
-
 def _sustained_per_minute(records: Records, continuous_torque_n_m: Floats) -> Floats:
-    """Jumps per minute at which neither motor makes more heat in its winding than at its continuous torque."""
+    """Return jumps per minute at which neither motor makes more heat in its winding than at its continuous torque."""
     allowed_w = records["heat_w_per_n2_m2"] * np.square(continuous_torque_n_m)
     with np.errstate(divide="ignore"):
         return np.asarray((60.0 * allowed_w / records["winding_heat_j"]).min(axis=1))

@@ -1,7 +1,7 @@
-"""The course of many jumps in a few frames each: what an animation or a chart over time needs.
+"""The course of many jumps in a few frames each, for an animation or a chart over time.
 
-The jumps are those of ``population``, stepped one step at a time, and read from the controller's records. A trace of
-``jump.single`` has more columns and every step, and takes thirty times as long.
+Batches are stepped one step at a time and read from the controller's records. A trace of ``jump.single`` has more
+columns and every step, and takes thirty times as long.
 """
 
 from collections.abc import Mapping
@@ -10,14 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import GRAVITY_M_PER_S2, complete_control
+from pareto_monoped.design import GRAVITY_M_PER_S2, Floats, complete_control
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.model import start_pose
 from pareto_monoped.jump.population import Population, Records, prepare
 from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import RobotArrays
-
-Floats = NDArray[np.float64]
 
 FRAME_COLUMNS = (
     "base_x_m", "base_z_m", "hip_rad", "knee_rad", "hip_rad_per_s", "knee_rad_per_s",
@@ -47,10 +45,10 @@ class Recording:
 
 
 def frame_steps(lift_off_step: int, last_step: int, frames: int) -> NDArray[np.intp]:
-    """Which steps are kept: two thirds of them before lift-off, when most of the motion takes place.
+    """Return which steps are kept: two thirds of them before lift-off, when most of the motion takes place.
 
-    The steps between two frames are equal in number before lift-off, and again after it, except at the first and the
-    last frame. Equal steps have small differences, which ``report.jump_packing`` makes use of.
+    Before lift-off and after it, frames lie equally many steps apart except at the first and last frame, which
+    ``report.jump_packing`` makes use of.
     """
     stance = 2 * frames // 3
     before = max(-(-lift_off_step // (stance - 1)), 1)
@@ -62,17 +60,9 @@ def frame_steps(lift_off_step: int, last_step: int, frames: int) -> NDArray[np.i
 def recordings(
     robots: RobotArrays, control: Floats, calibration: Calibration, frames: int, workers: int = 1
 ) -> list[Recording | None]:
-    """Jump with robots that can stand, and keep a few frames of each jump.
+    """Jump with robots that can stand, and keep at most ``frames`` frames (at least 4) of each jump.
 
-    Args:
-        robots: n robots.
-        control: of each, see ``design.complete_control``.
-        calibration: the jump model.
-        frames: how many, at least 4; a jump of fewer steps has fewer.
-        workers: threads.
-
-    Returns:
-        One per robot, in their order; None for a jump that does not reach its apex.
+    The list has one recording per robot, in their order; None for a jump that does not reach its apex.
     """
     result: list[Recording | None] = []
     control = complete_control(control)
@@ -86,7 +76,7 @@ def recordings(
 
 
 def _course(population: Population) -> Floats:
-    """``FRAME_COLUMNS`` at every step of every jump, shape (n, steps, columns); zero after a jump's end."""
+    """Return ``FRAME_COLUMNS`` at every step of every jump, shape (n, steps, columns); zero after a jump's end."""
     from mujoco import batch
 
     from pareto_monoped.jump.callback import controlled
@@ -141,12 +131,12 @@ class _Bodies:
         return cls(step_s=records["timestep_s"].copy(), mass_kg=records["body_mass_kg"].copy(), **given)
 
     def clearance_m(self, position: Floats, directions: Floats) -> Floats:
-        """Gap between foot and floor."""
+        """Return the gap between foot and floor."""
         reach = self.thigh_length_m * directions[:, 1] + self.shank_length_m * directions[:, 3]
         return np.asarray(position[:, 1] - reach - self.foot_radius_m)
 
     def momentum_kg_m_per_s(self, velocity: Floats, directions: Floats) -> Floats:
-        """Upward momentum of the whole robot."""
+        """Return the upward momentum of the whole robot."""
         rise, hip, below = velocity[:, 1], velocity[:, 2], velocity[:, 2] + velocity[:, 3]
         sin_hip, cos_hip, sin_knee, cos_knee = directions.T
         thigh, shank = self.thigh_com_m, self.shank_com_m

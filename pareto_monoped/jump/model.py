@@ -1,9 +1,7 @@
-"""Robot -> MuJoCo: the MJCF document of one robot, and the same numbers as model fields for a batch.
+"""Robot -> MuJoCo: the start pose, the MJCF document of one robot, and the same numbers as model fields for a batch.
 
 World frame: x forward, z up, floor at z = 0. The joints turn about +y. At zero both links hang straight down; a
 negative hip angle swings the thigh forward, and a positive knee angle is flexion. The base slides and does not pitch.
-
-Inverse kinematics of the start pose: base at its start height, foot directly below it (paper, section IV-B).
 """
 
 from dataclasses import dataclass
@@ -12,14 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import GRAVITY_M_PER_S2
+from pareto_monoped.design import GRAVITY_M_PER_S2, Floats
 from pareto_monoped.jump.calibration import Calibration, Drive, Joints, SpringContact
 from pareto_monoped.jump.end_stops import EndStops, end_stops
 from pareto_monoped.robot.population import RobotArrays
 from pareto_monoped.robot.units import JOINTS
 
-LEAST_IMPEDANCE = 0.0001
-"""MuJoCo's smallest impedance (mjMINIMP), which a hardening spring has at first touch."""
+LEAST_IMPEDANCE = 0.0001  #: MuJoCo's smallest impedance (mjMINIMP), which a hardening spring has at first touch.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,14 +35,10 @@ is nearly cubic, then quadratically."""
 
 
 def start_pose(robots: RobotArrays, calibration: Calibration) -> StartPose:
-    """Joint angles that place the foot directly below the base.
+    """Return the joint angles with the base at its start height and the foot directly below it (paper, section IV-B).
 
     With a spring contact the foot starts compressed by the robot's weight, so that nothing moves before the motors do.
-    With a contact given by MuJoCo's parameters it starts just touching.
-
-    Args:
-        robots: n robots.
-        calibration: the contact, and the end stops that the pose must respect.
+    With a contact given by MuJoCo's parameters it starts just touching. The pose must lie within the end stops.
     """
     radius = robots.foot_radius_m
     sunk = np.zeros(len(robots))
@@ -82,15 +75,11 @@ def start_pose(robots: RobotArrays, calibration: Calibration) -> StartPose:
 
 
 def compression_m(contact: SpringContact, force_n: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Compression of the foot's rubber under a steady force, shape (n,), by Newton's method.
+    """Return the compression of the foot's rubber under a steady force, shape (n,), by Newton's method.
 
-    Without velocity and acceleration, the force of MuJoCo's constraint (see ``model.spring_fields``) is
-    k (1 - D) d^2 / (D^2 (1 - d)) r up to the full width, and k r beyond. It is convex up to the full width, so that
-    Newton's method converges from there monotonically.
-
-    Args:
-        contact: the spring.
-        force_n: shape (n,).
+    Without velocity and acceleration, the force of MuJoCo's constraint (see ``spring_fields``) is k (1 - D) d^2 / (D^2
+    (1 - d)) r up to the full width, and k r beyond. It is convex up to the full width, so that Newton's method
+    converges from there monotonically.
     """
     full, least, width = contact.impedance, LEAST_IMPEDANCE, contact.width_m
     slope = (full - least) / width
@@ -103,8 +92,6 @@ def compression_m(contact: SpringContact, force_n: NDArray[np.float64]) -> NDArr
     return np.where(linear < width, r, linear)
 
 
-Floats = NDArray[np.float64]
-
 # Body numbers in the model; the world is 0.
 BASE, THIGH, SHANK = 1, 2, 3
 FOOT_GEOM = 1
@@ -113,14 +100,7 @@ _LINEAR, _SIGMOID = (0.5, 1.0), (0.5, 2.0)
 
 
 def mjcf(robots: RobotArrays, calibration: Calibration, index: int = 0, *, comment: str = "") -> str:
-    """The MJCF document of robot ``index``, which is exactly what a batch simulates for that robot.
-
-    Args:
-        robots: robots that can be built and can stand.
-        calibration: the jump model.
-        index: which of the robots.
-        comment: text at the head of the document, such as the design.
-    """
+    """Return the MJCF document of robot ``index``, which is exactly what a batch simulates for that robot."""
     import mujoco
 
     fields = {name: values[index] for name, values in model_fields(robots, calibration).items()}
@@ -135,13 +115,7 @@ def mjcf(robots: RobotArrays, calibration: Calibration, index: int = 0, *, comme
 
 
 def template_mjcf(calibration: Calibration, stops: EndStops, user_data: int) -> str:
-    """The MJCF document of a robot with round numbers; a batch overwrites the fields of each robot.
-
-    Args:
-        calibration: the jump model.
-        stops: of hip and knee.
-        user_data: length of the user data of every simulation.
-    """
+    """Return the MJCF document of a robot with round numbers; a batch overwrites the fields of each robot."""
     fields = {
         "body_mass": np.ones(4),
         "body_ipos": np.zeros((4, 3)),
@@ -161,7 +135,7 @@ def template_mjcf(calibration: Calibration, stops: EndStops, user_data: int) -> 
 
 
 def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Floats]:
-    """The model fields that differ between robots: MuJoCo's name -> values of shape (n, ...)."""
+    """Return the model fields that differ between robots: MuJoCo's name -> values of shape (n, ...)."""
     n, slides = len(robots), calibration.simulation.base_slides
     mass, com, inertia = (np.zeros((n, 4, *tail)) for tail in ((), (3,), (3,)))
     mass[:, 1:] = robots.body_mass_kg
@@ -206,41 +180,36 @@ def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Flo
 
 
 def joint_damping(robots: RobotArrays, joints: Joints) -> Floats:
-    """Viscous friction of hip and knee with their motors', N m s/rad, shape (n, 2)."""
+    """Return viscous friction of hip and knee with their motors', N m s/rad, shape (n, 2)."""
     return joints.damping_n_m_s_per_rad + joints.motor_damping_n_m_s_per_rad * np.square(robots.ratio)
 
 
 def gear_efficiency(robots: RobotArrays, drive: Drive) -> Floats:
-    """Efficiency of both gearboxes under load, shape (n, 2), as the calibration reads it."""
+    """Return the efficiency of both gearboxes under load, shape (n, 2), as the calibration reads it."""
     if not drive.mesh_losses:
         return np.ones_like(robots.efficiency)
     return (robots.efficiency_total if drive.efficiency == "total" else robots.efficiency).copy()
 
 
 def torque_limit(robots: RobotArrays, drive: Drive) -> Floats:
-    """Peak torque of hip and knee, N m at the joint, shape (n, 2)."""
+    """Return the peak torque of hip and knee, N m at the joint, shape (n, 2)."""
     return drive.peak_torque_scale * robots.peak_torque_n_m * [1.0, drive.knee_torque_scale]
 
 
 def spring_fields(
     calibration: Calibration, stops: EndStops, body_invweight0: Floats, dof_invweight0: Floats
 ) -> dict[str, Floats]:
-    """MuJoCo's parameters for springs and dampers given in SI units.
+    """Return MuJoCo's parameters for springs and dampers given in SI units.
 
     MuJoCo computes a constraint's force as d / (1 - d) / A (b' v + k' r - a), with impedance d (D at full compression),
     a fixed inverse mass A, k' = -solref[0] d / D^2 and b' = -solref[1] / D (its documentation, "Computation: constraint
     model" and "Solver parameters"). A stiffness k in N/m at full compression therefore needs solref[0] = -k A (1 - D),
-    and a damping c in N s/m needs solref[1] = -c A (1 - D).
-
-    Args:
-        calibration: the contact.
-        stops: of hip and knee.
-        body_invweight0: MuJoCo's inverse masses of the bodies, shape (n, 4, 2).
-        dof_invweight0: MuJoCo's inverse masses of the joints, shape (n, nv).
+    and a damping c in N s/m needs solref[1] = -c A (1 - D). MuJoCo's inverse masses of bodies have shape (n, 4, 2),
+    those of joints (n, nv).
 
     Returns:
-        ``geom_solref`` of the foot, shape (n, 2), and ``jnt_solref`` of hip and knee, shape (n, 2, 2). A key is missing
-        if the calibration has no such springs.
+        ``geom_solref`` of the foot, shape (n, 2), and ``jnt_solref`` of hip and knee, shape (n, 2, 2), if the
+        calibration has such springs.
     """
     result = {}
     contact = calibration.contact
@@ -274,7 +243,7 @@ def _document(
     springs: dict[str, Any] | None,
     comment: str,
 ) -> str:
-    """The XML text of one robot; reading its numbers gives the same bits."""
+    """Return the XML text of one robot; reading its numbers gives the same bits."""
     simulation, joints = calibration.simulation, calibration.joints
     friction_loss = f' frictionloss="{_n(joints.friction_n_m)}"' if joints.friction_n_m else ""
     contact = calibration.contact
@@ -357,5 +326,5 @@ friction="{_n(contact.friction)} 0.005 0.0001" solref="{_n(*foot_solref)}" solim
 
 
 def _n(*values: float) -> str:
-    """Numbers, each as the shortest text that reads back to the same bits."""
+    """Return numbers, each as the shortest text that reads back to the same bits."""
     return " ".join(repr(float(value)) for value in values)

@@ -24,30 +24,25 @@ from pareto_monoped.errors import complaint as complaint_of
 from pareto_monoped.jump.calibration import calibration_names, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 
-_DRAWN = 12
-"""Probe designs besides the paper's. Our own choice: all together jump in a few tenths of a second."""
+_DRAWN = 12  #: Probe designs besides the paper's. Our own choice: all together jump in a few tenths of a second.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Facts:
     """What decides the numbers of a worker."""
 
-    versions: dict[str, str]
-    """Of this package and of those that compute."""
+    versions: dict[str, str]  #: Of this package and of those that compute.
     system: str
     machine: str
-    numbers: str
-    """Digest of every measure of the probe designs under every shipped calibration, to the last bit."""
-    linear_algebra: str
-    """Kind of processor that numpy's linear algebra was chosen for, in the words of OpenBLAS. It is not compared, but
-    is the likeliest reason of other numbers between hosts."""
+    numbers: str  #: Digest of every measure of the probe designs under every shipped calibration, to the last bit.
+    linear_algebra: str  #: Processor for which OpenBLAS was chosen: not compared, but likely why hosts differ.
 
 
 _lock = threading.Lock()
 
 
 def facts() -> Facts:
-    """The facts of this process; computed once."""
+    """Return the facts of this process; computed once."""
     with _lock:
         return _facts()
 
@@ -65,7 +60,7 @@ def _facts() -> Facts:
 
 
 def _linear_algebra() -> str:
-    """Kind of processor that numpy's linear algebra was chosen for; empty if it does not say."""
+    """Return the kind of processor that numpy's linear algebra was chosen for; empty if it does not say."""
     kinds = {library.get("architecture") for library in threadpool_info() if library["user_api"] == "blas"}
     return ", ".join(sorted(kind for kind in kinds if kind))
 
@@ -87,7 +82,7 @@ def _numbers() -> str:
 
 
 def _facts_with(extra: str | None) -> Facts:
-    """The facts of this process, with the versions of what an extra has."""
+    """Return the facts of this process, with the versions of what an extra has."""
     plain = facts()
     if extra is None:
         return plain
@@ -101,18 +96,13 @@ def _facts_with(extra: str | None) -> Facts:
 
 
 def greeting(threads: int, extra: str | None = None) -> Facts:
-    """The first task of a worker: take note of its threads, warm up, and say who it is.
-
-    Args:
-        threads: of its tasks.
-        extra: whose packages also do the work, see ``extras.EXTRAS``.
-    """
+    """Do the first task of a worker: set the threads of its tasks, warm up, and return its facts."""
     set_task_threads(threads)
     return _facts_with(extra)
 
 
 def complaint(theirs: Facts, extra: str | None = None) -> str | None:
-    """What keeps a worker with these facts from working for this process; None if nothing does."""
+    """Return what keeps a worker with these facts from working for this process; None if nothing does."""
     ours = _facts_with(extra)
     pairs = [(name, theirs.versions.get(name), here) for name, here in ours.versions.items()]
     pairs += [("system", theirs.system, ours.system), ("machine", theirs.machine, ours.machine)]
@@ -136,14 +126,10 @@ def crew_of(
     seat: int = 0,
     extra: str | None = None,
 ) -> Crew:
-    """An executor over the workers of a staff who compute the same numbers; a context that closes both.
+    """Return an executor over the workers of a staff who compute the same numbers; a context that closes both.
 
-    Args:
-        staff: the workers.
-        tell: called with a line for the user when a worker is lost or refused.
-        limits: how long to wait for tasks and workers.
-        seat: see ``Crew``.
-        extra: whose packages also do the work, such as ``cad`` for exports.
+    ``tell`` is called with a line for the user when a worker is lost or refused. The versions of packages of ``extra``,
+    such as ``cad`` for exports, must agree, too. For ``seat`` see ``Crew``.
     """
     greet, check = partial(greeting, extra=extra), partial(complaint, extra=extra)
     crew = Crew(staff, greeting=greet, check=check, tell=tell, limits=limits, seat=seat)
@@ -158,15 +144,10 @@ def crew_of(
 def processes(
     count: int | None = None, *, tell: Callable[[str], None] = lambda _: None, limits: Limits | None = None
 ) -> Crew:
-    """An executor over fresh processes of this machine, which share its cores; see ``crew_of``.
-
-    Args:
-        count: number of processes, one per core if None.
-        tell: see ``crew_of``.
-        limits: see ``crew_of``.
+    """Return an executor over fresh processes of this machine, one per core if ``count`` is None; see ``crew_of``.
 
     Raises:
-        InputError: no process.
+        InputError: fewer than one process.
     """
     if count is not None and count < 1:
         raise InputError(complaint_of("processes", count, "a whole number from 1", "give None for one per core"))
@@ -182,16 +163,10 @@ def cluster(
     seat: int | None = None,
     extra: str | None = None,
 ) -> Crew:
-    """An executor over the workers of a Dask scheduler, see ``crew_of``; needs the extra ``cluster``.
+    """Return an executor over the workers of a Dask scheduler, see ``crew_of``; needs the extra ``cluster``.
 
-    Dask sends tasks by pickle: only among hosts that trust each other.
-
-    Args:
-        address: of the scheduler, such as ``tcp://10.0.0.7:8786``.
-        tell: see ``crew_of``.
-        limits: see ``crew_of``.
-        seat: see ``Crew``; by default the number of this process.
-        extra: whose packages must be the same on every worker, too: ``cad`` for exports.
+    Dask sends tasks by pickle: only among hosts that trust each other. The default ``seat`` is the number of this
+    process.
 
     Raises:
         InputError: Dask is not installed here.

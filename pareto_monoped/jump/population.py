@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, PAPER_CONTROL, REST_LENGTH_M, complete_control
+from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, PAPER_CONTROL, REST_LENGTH_M, Floats, complete_control
 from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
@@ -19,7 +19,6 @@ from pareto_monoped.jump.variations import Variations, vary_fields, vary_records
 from pareto_monoped.robot.population import RobotArrays
 from pareto_monoped.robot.units import BODIES
 
-Floats = NDArray[np.float64]
 Records = NDArray[np.void]
 
 # Steps between two checks for jumps that are over; a jump wastes half of this on average.
@@ -35,8 +34,7 @@ _WARNINGS = {
     "mjWARN_INERTIA": "its mass matrix became singular",
     "mjWARN_CONTACTFULL": _FULL,
     "mjWARN_CNSTRFULL": _FULL,
-}
-"""MuJoCo's warnings in our words, those that say most first."""
+}  #: MuJoCo's warnings in our words, those that say most first.
 
 
 @dataclass(slots=True, kw_only=True)
@@ -50,8 +48,7 @@ class Population:
     def run(self) -> None:
         """Step all jumps to their end; a jump in which MuJoCo raises an error ends as diverged.
 
-        Raises:
-            SimulationError: MuJoCo did not call the controller; without it no jump would ever end.
+        Without a call of the controller no jump would ever end, so that raises ``SimulationError``.
         """
         from mujoco import batch
 
@@ -75,7 +72,7 @@ class Population:
                     )
 
     def complaints(self) -> list[str]:
-        """What MuJoCo found wrong in each jump, in our words; empty where nothing was."""
+        """Return what MuJoCo found wrong in each jump, in our words; empty where nothing was."""
         import mujoco
 
         texts = [" ".join(self.errors.get(i, "").split()) for i in range(len(self.records))]
@@ -97,15 +94,9 @@ def prepare(
     threads: int = 1,
     variations: Variations | None = None,
 ) -> Population:
-    """A population at rest in its start pose.
+    """Return a population of n robots that can stand, at rest in their start pose, stepped by ``threads`` threads.
 
-    Args:
-        robots: n robots that can stand.
-        control: of each, see ``design.complete_control``.
-        pose: their start pose.
-        calibration: the jump model.
-        threads: number of threads that step the simulations.
-        variations: what of the robots' variations ``robots`` and ``control`` do not show; None without any.
+    ``robots`` and ``control`` are varied already; the rest of ``variations`` is applied here.
     """
     import mujoco
     from mujoco.batch import Batch
@@ -131,7 +122,7 @@ def prepare(
 
 
 def _component(batch: Any, component: Any) -> Floats:
-    """A view of one component of all simulations' states, shape (n, size of the component).
+    """Return a view of one component of all simulations' states, shape (n, size of the component).
 
     ``batch.bind`` returns the same, but creates a costly ``MjData`` only to find the shape. A state is the
     ``mjSTATE_INTEGRATION`` of its simulation (documentation of ``mujoco.batch``), with its components in the order of
@@ -146,27 +137,20 @@ def _component(batch: Any, component: Any) -> Floats:
 
 @functools.lru_cache(maxsize=16)
 def _template(calibration: Calibration, stops: EndStops) -> Any:
-    """A model of a robot with round numbers; ``prepare`` overwrites every field that differs between robots."""
+    """Return a model of a robot with round numbers; ``prepare`` overwrites every field that differs between robots."""
     import mujoco
 
     return mujoco.MjModel.from_xml_string(model.template_mjcf(calibration, stops, RECORD_NUMBERS))
 
 
 def first_records(robots: RobotArrays, control: Floats, calibration: Calibration) -> Records:
-    """The controller's records before the first step, one per jump, shape (n,) of ``RECORD``.
-
-    Args:
-        robots: n robots.
-        control: of each, see ``design.complete_control``.
-        calibration: the jump model.
-    """
+    """Return the controller's records before the first step, one per jump, shape (n,) of ``RECORD``."""
     from pareto_monoped.jump import controller
 
     drive, gate, simulation = calibration.drive, calibration.gate, calibration.simulation
     records = np.zeros(len(robots), dtype=RECORD)
     records["status"] = controller.RUNNING
     records["height_m"] = robots.start_height_m
-
     records["timestep_s"] = simulation.timestep_s
     records["read_back_s"] = 0.5 * simulation.timestep_s if simulation.positions_read == "half_step_back" else 0.0
     records["period_steps"] = simulation.period_steps
@@ -178,14 +162,12 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
         records["latch"] = gate.latch
     else:
         records["lags"] = gate.lags
-    records["loss_speed_rad_per_s"] = drive.loss_speed_rad_per_s
-    records["regeneration_share"] = drive.regeneration_share
+    for name in ("loss_speed_rad_per_s", "regeneration_share", "voltage_limit"):
+        records[name] = getattr(drive, name)
     records["mean_speed"] = simulation.work_speed == "mean"
-    records["voltage_limit"] = drive.voltage_limit
 
-    records["thigh_length_m"] = robots.thigh_length_m
-    records["shank_length_m"] = robots.shank_length_m
-    records["foot_radius_m"] = robots.foot_radius_m
+    for name in ("thigh_length_m", "shank_length_m", "foot_radius_m", "no_load_speed_rad_per_s"):
+        records[name] = getattr(robots, name)
     given = dict(zip(CONTROL, complete_control(control).T, strict=True))
     for name in (*PAPER_CONTROL, "knee_release_rad"):
         records[name] = given[name]
@@ -202,7 +184,6 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
         records["start_rad"] = np.stack([pose.hip_rad, pose.knee_rad], axis=1)
     limit = model.torque_limit(robots, drive)
     records["torque_limit_n_m"] = limit
-    records["no_load_speed_rad_per_s"] = robots.no_load_speed_rad_per_s
     # The voltage-speed line R i + k_t w = k_t w_0 meets the peak current at the corner speed.
     volts_per_speed = robots.ratio * robots.torque_constant_n_m_per_a
     current = limit / volts_per_speed

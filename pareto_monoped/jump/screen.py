@@ -1,8 +1,8 @@
-"""A screen before the audit: one coarse jump that shows of most designs that their audit would pass.
+"""A screen before the audit: one coarse jump shows that most designs would pass their audit.
 
-The jump has twice the step, and the design is perturbed. Its height, energy and energy balance take in, all at once,
-what the audit measures one after the other, and the error of a step of first order is twice as large. Where even this
-jump is close to the one evaluated, an audit finds nothing. The others are audited.
+The jump has twice the step, and the design is perturbed: together this takes in what the audit measures one by one, and
+first-order errors of the step are twice as large. Where even this jump is close to the one evaluated, an audit finds
+nothing.
 """
 
 from concurrent.futures import Executor
@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.ratiomap import Maps
 from pareto_monoped.compute.chunks import pace_of, spread
 from pareto_monoped.compute.threads import task_threads
-from pareto_monoped.design import CONTROL, columns
-from pareto_monoped.jump.audit import LIMITS, Floats, Jumps, perturbed
+from pareto_monoped.design import CONTROL, Floats, columns
+from pareto_monoped.jump.audit import LIMITS, Jumps, perturbed
 from pareto_monoped.jump.balance import balanced
 from pareto_monoped.jump.calibration import Calibration, FadeGate
 from pareto_monoped.jump.model import start_pose
@@ -25,9 +25,10 @@ from pareto_monoped.measures import ScreenMeasures
 from pareto_monoped.robot.population import robot_arrays
 
 CLEAR: dict[str, float] = {"half_step_height_m": 0.5, "half_step_energy": 1.5, "energy_balance_error": 0.5}
-"""Shares of the audit's limits that a coarse jump may reach if its design needs no audit. Our own choice, by
-measurement (``benchmarks/audit_time.py``). Energy has more room: where each step is a control period, the period
-doubles, too, which changes the energy by half a percent and more, smoothly."""
+"""Shares of the audit's limits that a coarse jump may reach if its design needs no audit. Our own choice, measured by
+``benchmarks/audit_time.py``. Energy has more room, as a doubled control period changes it by half a percent,
+smoothly.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,12 +46,12 @@ class Screened(ScreenMeasures):
         )
 
     def as_columns(self) -> dict[str, Floats]:
-        """Column name to values of shape (n,)."""
+        """Return column name to values of shape (n,)."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
 def coarser(calibration: Calibration) -> Calibration | None:
-    """The calibration with twice its step; None where one coarse jump does not tell enough, or cannot be made.
+    """Return the calibration with twice its step; None where one coarse jump does not tell enough, or cannot be made.
 
     The control period stays if it has an even number of steps. Otherwise it doubles, too. A gate that switches the
     whole torque from step to step needs an audit of every design: two jumps may agree by chance. The integrator RK4 has
@@ -79,17 +80,7 @@ def screened(
     executor: Executor | None = None,
     seed: int = 0,
 ) -> Screened:
-    """Compare the jumps of designs with coarse ones. To the last bit, no design's result depends on the others.
-
-    Args:
-        designs: shape (n, number of variables).
-        actuator_map: the gearboxes.
-        calibration: the jump model.
-        known: the jumps of the designs under it.
-        workers: threads.
-        executor: does the jumps in their place.
-        seed: of the perturbations.
-    """
+    """Compare ``known`` jumps of designs with coarse ones; no design's result depends on the others in any bit."""
     if executor is not None and len(designs):
         text = setup_text([actuator_map], calibration)
 
@@ -115,6 +106,5 @@ def screened(
 
 
 def _screened_of(text: str, designs: Floats, known: Jumps, seed: int) -> Screened:
-    """What a worker does."""
     (maps,), calibration = built(text)
     return screened(designs, maps, calibration, known, workers=task_threads(), seed=seed)

@@ -1,7 +1,6 @@
-"""Jumps that an executor shares out: here are both sides, the evaluator that asks and the function that answers.
+"""Both sides of jumps that an executor shares out: the evaluator that asks and the function that answers.
 
-What jumps are simulated with travels as JSON text of every value, as studies store it. A worker reads it once, builds
-the maps and keeps them.
+What decides jumps travels as JSON text, as studies store it. A worker reads it once, builds the maps and keeps them.
 """
 
 import json
@@ -18,20 +17,18 @@ from pareto_monoped.actuator.search import map_of
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.compute.chunks import Pace, pace_of, spread
 from pareto_monoped.compute.threads import task_threads
-from pareto_monoped.design import complete
+from pareto_monoped.design import Floats, complete
 from pareto_monoped.errors import InputError
 from pareto_monoped.jump.calibration import Calibration, calibration_of, calibration_values
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.variations import Variations, joined, take
 
-Floats = NDArray[np.float64]
-Setup = tuple[tuple[JointMaps, ...], Calibration]
-"""Gearboxes of every kit of motors, and the jump model."""
+Setup = tuple[tuple[JointMaps, ...], Calibration]  #: Gearboxes of every kit of motors, and the jump model.
 _SOURCE = "a task's setup"
 
 
 def setup_text(maps: Sequence[Maps], calibration: Calibration) -> str:
-    """Everything that decides jumps as JSON text, which ``built`` reads back.
+    """Return everything that decides jumps as JSON text, which ``built`` reads back.
 
     Raises:
         InputError: a map that was built with settings of its own, which no worker knows.
@@ -57,7 +54,7 @@ def setup_text(maps: Sequence[Maps], calibration: Calibration) -> str:
 
 @lru_cache(maxsize=16)
 def built(text: str) -> Setup:
-    """The setup in a text of ``setup_text``; kept for the next task."""
+    """Return the setup in a text of ``setup_text``; kept for the next task."""
     values = json.loads(text)
     maps = [map_of(stored_motor(motor, source=_SOURCE), rules) for motor, rules in values["motors"]]
     kits = tuple(JointMaps(hip=maps[hip], knee=maps[knee]) for hip, knee in values["kits"])
@@ -65,7 +62,7 @@ def built(text: str) -> Setup:
 
 
 def jumps_of(text: str, designs: Floats, motors: NDArray[np.intp], variations: Variations | None) -> Evaluations:
-    """What a worker does: let designs jump, see ``Evaluator``."""
+    """Let designs jump in a worker, see ``Evaluator``."""
     (first, *others), calibration = built(text)
     return Evaluator(first, calibration, task_threads(), others=others)(designs, motors, variations=variations)
 
@@ -113,7 +110,7 @@ def evaluator_of(
     others: Sequence[Maps] = (),
     executor: Executor | None = None,
 ) -> Evaluator:
-    """An evaluator on this process's threads, or on an executor if there is one; ``workers`` are the threads."""
+    """Return an evaluator on this process's threads, or on an executor if there is one; ``workers`` are the threads."""
     if executor is None:
         return Evaluator(actuator_map, calibration, workers, others=others)
     return SharedEvaluator(actuator_map, calibration, workers, others=others, executor=executor)

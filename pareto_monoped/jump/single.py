@@ -1,7 +1,7 @@
 """One jump, step by step: the trace, which a batch does not record.
 
-The loop runs plain ``mj_step`` on the exported MJCF with the torques of the compiled controller. It makes the same jump
-as the batch, to the last bit.
+The loop runs plain ``mj_step`` on the exported MJCF with the compiled controller, and makes the batch's jump to the
+bit.
 """
 
 from collections.abc import Iterator
@@ -9,18 +9,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.actuator.ratiomap import Maps
-from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, Design, columns
+from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, Design, Floats, columns
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.callback import quiet
-from pareto_monoped.jump.evaluate import Evaluations, Evaluator
+from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.model import mjcf
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
-
-Floats = NDArray[np.float64]
 
 TRACE_COLUMNS = (
     "time_s", "base_x_m", "base_z_m", "base_x_m_per_s", "base_z_m_per_s",
@@ -47,34 +44,20 @@ class JumpResult:
 
 
 def simulate(design: Design, maps: Maps, calibration: Calibration, *, trace: bool = False) -> JumpResult:
-    """Jump once.
-
-    Args:
-        design: the design.
-        maps: the gearboxes of both joints, or of hip and knee.
-        calibration: the jump model.
-        trace: whether to record every step.
-    """
+    """Jump once, with the gearboxes of both joints or of hip and knee; ``trace`` records every step."""
     values = design.as_array()[None, :]
     evaluations = Evaluator(maps, calibration)(values)
     rows: dict[str, Floats] = {}
     if trace and evaluations.status[0] not in ("bad_input", "no_gearbox", "cannot_stand"):
         robots = robot_arrays(values, maps, calibration.mass)
         rows = trace_of(robots, columns(values, CONTROL), calibration)
-    return result_of(design, calibration, evaluations, rows)
-
-
-def result_of(
-    design: Design, calibration: Calibration, evaluations: Evaluations, trace: dict[str, Floats]
-) -> JumpResult:
-    """The first row of ``evaluations`` as a single result."""
     return JumpResult(
         design=design,
         calibration=calibration.label,
         status=str(evaluations.status[0]),
         reason=evaluations.reason[0],
         measures={name: float(getattr(evaluations, name)[0]) for name in MEASURE_NAMES},
-        trace=trace,
+        trace=rows,
     )
 
 
@@ -139,7 +122,7 @@ def moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> I
 
 
 def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> dict[str, Floats]:
-    """``TRACE_COLUMNS`` of the first robot's jump, each of shape (steps,)."""
+    """Return ``TRACE_COLUMNS`` of the first robot's jump, each of shape (steps,)."""
     import mujoco
 
     rows = []
@@ -149,41 +132,23 @@ def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
         data, q, v = moment.data, moment.qpos, moment.qvel
         slides = len(q) == 4
         foot = data.site_xpos[0]
-        force = contact_force(data)
+        force = constraint_forces(data)[2]
         matrix = np.zeros((len(v), len(v)))
         mujoco.mj_fullM(moment.model, data, matrix)
         torques = (0.0,) * 4 if moment.last else (*moment.record["motor_torque_n_m"], *data.ctrl)
-        rows.append(
-            (
-                index * calibration.simulation.timestep_s,
-                q[0] if slides else 0.0,
-                q[-3],
-                v[0] if slides else 0.0,
-                v[-3],
-                foot[0],
-                foot[2],
-                foot[2] - radius,
-                q[-2],
-                q[-1],
-                v[-2],
-                v[-1],
-                *torques,
-                force[0] if slides else float("nan"),
-                force[-3],
-                0.5 * v @ matrix @ v,
-                weight_n * float(data.subtree_com[0, 2]),
-            )
-        )
+        base = (q[0] if slides else 0.0, q[-3], v[0] if slides else 0.0, v[-3])
+        legs = (foot[0], foot[2], foot[2] - radius, q[-2], q[-1], v[-2], v[-1])
+        floor = (force[0] if slides else float("nan"), force[-3])
+        energies = (0.5 * v @ matrix @ v, weight_n * float(data.subtree_com[0, 2]))
+        rows.append((index * calibration.simulation.timestep_s, *base, *legs, *torques, *floor, *energies))
     return dict(zip(TRACE_COLUMNS, np.array(rows).T, strict=True))
 
 
-def contact_force(data: Any) -> Floats:
-    """The generalised force of all contacts, shape (nv,); its slide entries are the floor's force on the foot."""
-    return constraint_forces(data)[2]
-
-
 def constraint_forces(data: Any) -> tuple[Floats, Floats, Floats]:
-    """The generalised forces of joint friction, end stops and contacts, each of shape (nv,)."""
+    """Return the generalised forces of joint friction, end stops and contacts, each of shape (nv,).
+
+    The slide entries of the contacts' are the floor's force on the foot.
+    """
     import mujoco
 
     kinds, kind = mujoco.mjtConstraint, data.efc_type

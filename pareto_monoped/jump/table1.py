@@ -11,8 +11,7 @@ from pareto_monoped.jump.audit import perturbed
 from pareto_monoped.jump.calibration import Calibration, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 
-PERTURBATIONS = 100
-"""Copies per case, the design itself among them."""
+PERTURBATIONS = 100  #: Copies per case, the design itself among them.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,12 +24,9 @@ class Result:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spread(Result):
-    """Medians over perturbed copies of a design, with the 5th and 95th percentiles, over the copies that jump.
+    """Medians over the perturbed copies of a design that jump, with percentiles; all are NaN if no copy jumps.
 
     Rounding may decide a single jump of the literal model, so only their distribution means anything.
-
-    Attributes:
-        height_m, energy_j: medians; NaN if no copy jumps, as the percentiles.
     """
 
     #: height_p05_m, height_p95_m, energy_p05_j, energy_p95_j: percentiles
@@ -51,19 +47,12 @@ class Row:
     reference: Result
 
     def as_dict(self) -> dict[str, Any]:
-        """The row as nested dicts of plain values."""
+        """Return the row as nested dicts of plain values."""
         return asdict(self)
 
 
 def table1(paper_map: ActuatorMap, reference_map: ActuatorMap, *, workers: int = 1, seed: int = 0) -> tuple[Row, ...]:
-    """The four cases of Table I.
-
-    Args:
-        paper_map: the gearboxes of the paper's motor for the calibration ``paper``.
-        reference_map: those for ``reference``.
-        workers: threads.
-        seed: of the perturbations.
-    """
+    """Return the four cases of Table I, with the gearboxes of the paper's motor for ``paper`` and ``reference``."""
     spreads = paper_spreads(paper_map, load_calibration("paper"), workers=workers, seed=seed)
     designs = np.array([case.design.as_array() for case in PAPER_CASES.values()])
     reference = Evaluator(reference_map, load_calibration("reference"), workers)(designs)
@@ -86,15 +75,7 @@ def paper_spreads(
     workers: int = 1,
     seed: int = 0,
 ) -> tuple[Spread, ...]:
-    """Medians and percentiles of the four cases under one calibration.
-
-    Args:
-        actuator_map: the gearboxes of the paper's motor.
-        calibration: the jump model.
-        perturbations: copies per case, changed by up to 1e-6; the first is the design itself.
-        workers: threads.
-        seed: of the perturbations.
-    """
+    """Return medians and percentiles of the four cases, of which each has copies changed by up to 1e-6 and itself."""
     designs = np.array([case.design.as_array() for case in PAPER_CASES.values()])
     copies = perturbed(designs, perturbations, np.random.default_rng(seed))
     copies[::perturbations] = designs

@@ -3,8 +3,6 @@
 A robot that was built has other masses, motors and springs than its model. Its controller does not know them: the term
 m g of the virtual leg keeps the nominal mass. Its links are measured, so the controller knows their true lengths. It
 starts in the balanced pose of its true masses and lengths, on a foot that is compressed as nominal.
-
-Rows of a struct of arrays.
 """
 
 from collections.abc import Sequence
@@ -14,15 +12,13 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import CONTROL, PAPER_CONTROL
+from pareto_monoped.design import CONTROL, PAPER_CONTROL, Floats
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.robot.population import RobotArrays
 from pareto_monoped.robot.units import BODIES
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,7 +43,7 @@ class Variations:
 
 
 def varied_robots(robots: RobotArrays, variations: Variations) -> RobotArrays:
-    """The robots as built. Centres of mass stay, and so does the mass of a link that is a little longer."""
+    """Return the robots as built. Centres of mass stay, and so does the mass of a link that is a little longer."""
     return replace(
         robots,
         body_mass_kg=robots.body_mass_kg * variations.masses,
@@ -60,7 +56,7 @@ def varied_robots(robots: RobotArrays, variations: Variations) -> RobotArrays:
 
 
 def varied_control(control: Floats, variations: Variations) -> Floats:
-    """The gains as they act, shape (n, 6), in the order of ``CONTROL``."""
+    """Return the gains as they act, shape (n, 6), in the order of ``CONTROL``."""
     varied = control.copy()
     varied[:, [CONTROL.index(name) for name in PAPER_CONTROL]] *= variations.gains
     return varied
@@ -94,12 +90,7 @@ T = TypeVar("T", bound="DataclassInstance")
 
 
 def take(record: T, rows: NDArray[np.intp]) -> T:
-    """A copy of a frozen dataclass whose fields are arrays or tuples with one row per item, with only some rows.
-
-    Args:
-        record: the dataclass; every array and tuple has n rows, anything else is the same for all items.
-        rows: indices of the rows to keep, in this order.
-    """
+    """Return a copy of a frozen dataclass with some rows of every array and tuple, in this order; the rest stays."""
     kept: dict[str, Any] = {}
     for field in fields(record):
         values = getattr(record, field.name)
@@ -111,11 +102,7 @@ def take(record: T, rows: NDArray[np.intp]) -> T:
 
 
 def joined(records: Sequence[T]) -> T:
-    """One record with the rows of all, see ``take``; a single record stays as it is.
-
-    Args:
-        records: at least one; what is the same for all items must be the same in all of them.
-    """
+    """Return one record with the rows of all, see ``take``; everything else must be the same in all of them."""
     if len(records) == 1:
         return records[0]
     together: dict[str, Any] = {}

@@ -8,16 +8,15 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from pareto_monoped.config import checked, read_shipped
+from pareto_monoped.config import Positive, Strict, checked, read_shipped
 from pareto_monoped.design import BASE_START_HEIGHT_M
 from pareto_monoped.report.front_figure import values
 from pareto_monoped.report.packing import unpacked_column
 from pareto_monoped.report.schema import Payload, StudyCard
 from pareto_monoped.report.tables import safe
 
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Words = Annotated[str, Field(min_length=1)]
 _WIDTH, _HEIGHT, _LEFT, _RIGHT, _TOP, _BOTTOM = 460, 330, 46, 14, 12, 40  # pixels of the chart and of its margins
 _MASSES_KG, _HEIGHTS_M = (0.005, 20.0), (0.1, 20.0)  # of its axes
@@ -25,10 +24,8 @@ Box = tuple[float, float, float, float]  #: Left, right, top and bottom of a rec
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Jumper:
+class Jumper(Strict):
     """A jumping robot or animal; what its source does not give is None."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: Words  #: what it is called
     drive: Words  #: what moves it
@@ -40,9 +37,7 @@ class Jumper:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Jumpers:
-    __pydantic_config__ = ConfigDict(extra="forbid")
-
+class _Jumpers(Strict):
     robots: tuple[Jumper, ...]
 
 

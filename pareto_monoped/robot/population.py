@@ -8,9 +8,10 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from pareto_monoped.actuator.ratiomap import JointMaps, Maps, joint_maps
+from pareto_monoped.config import Strict
 from pareto_monoped.design import NAMES, complete
 from pareto_monoped.geometry.parts import MassProperties
 from pareto_monoped.geometry.shapes import Floats
@@ -21,10 +22,8 @@ from pareto_monoped.robot.units import BODIES, JOINTS, UNITS, ActuatorSized
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MassOptions:
+class MassOptions(Strict):
     """Masses that a calibration may set in place of those of the parts; None keeps those of the parts."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     #: Mass of the base frame, without the hip actuator
     base_structure_mass_kg: Annotated[float, Field(ge=0.0, allow_inf_nan=False)] | None = None

@@ -11,8 +11,9 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
+from pareto_monoped.config import Strict
 from pareto_monoped.errors import InputError, complaint
 from pareto_monoped.uncertainty.samples import DIMENSIONS, Name
 from pareto_monoped.uncertainty.settings import Uncertainty
@@ -121,10 +122,8 @@ def _effects(table: Floats, steps: Floats) -> Floats:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Factor:
+class Factor(Strict):
     """One factor."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: str  #: unique among the factors of a sensitivity
     label: str  #: in words
@@ -189,14 +188,11 @@ def between(factor: Factor, points: NDArray[np.float64]) -> NDArray[np.float64]:
 About = Literal["variables", "assumptions"]
 """Kinds of factors: the design's variables, or what is uncertain in a robot that is built."""
 Number = Annotated[float, Field(allow_inf_nan=False)]
-_STRICT = ConfigDict(extra="forbid")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Influence:
+class Influence(Strict):
     """One factor on one measure."""
-
-    __pydantic_config__ = _STRICT
 
     change: Number  #: of the measure in its stored unit, from the lower to the upper end of the factor
     first: Number  #: first-order Sobol' index
@@ -206,20 +202,16 @@ class Influence:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FactorInfluence:
+class FactorInfluence(Strict):
     """One factor, and its influence on each measure."""
-
-    __pydantic_config__ = _STRICT
 
     factor: Factor
     measures: dict[str, Influence]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Sensitivity:
+class Sensitivity(Strict):
     """The sensitivity of one design."""
-
-    __pydantic_config__ = _STRICT
 
     about: About  #: which kind of factors
     blocks: Annotated[int, Field(ge=1)]  #: base samples that the indices rest on

@@ -8,12 +8,11 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
-from pareto_monoped.config import checked, read_shipped, read_toml
+from pareto_monoped.config import Strict, checked, read_shipped, read_toml
 from pareto_monoped.errors import InputError, StudyError, complaint
 
-_STRICT = ConfigDict(extra="forbid")
 SHIPPED, WHAT = "uncertainty.toml", "uncertainty file"
 """The shipped file, and what such a file is called in messages."""
 _LEAST_SHARE, _MOST_LENGTH_M = -0.9, 0.01
@@ -21,10 +20,8 @@ _LEAST_SHARE, _MOST_LENGTH_M = -0.9, 0.01
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Range:
+class Range(Strict):
     """A quantity that is uniform between two ends."""
-
-    __pydantic_config__ = _STRICT
 
     #: lower, upper: the ends; equal ends switch the uncertainty off
     lower: Annotated[float, Field(allow_inf_nan=False)]
@@ -38,10 +35,8 @@ class Range:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Uncertainty:
+class Uncertainty(Strict):
     """All ranges; ``data/uncertainty.toml`` says what each is about. Those without unit are shares."""
-
-    __pydantic_config__ = _STRICT
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]+$")]
     masses: Range

@@ -6,8 +6,9 @@ from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
+from pareto_monoped.config import Strict
 from pareto_monoped.jump.evaluate import Evaluations
 from pareto_monoped.measures import MEASURE_NAMES
 
@@ -18,10 +19,8 @@ Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Spread:
+class Spread(Strict):
     """A measure over the samples that jumped, in its stored unit."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     mean: Number  #: of the samples
     deviation: Number  #: their standard deviation
@@ -31,10 +30,8 @@ class Spread:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Robustness:
+class Robustness(Strict):
     """One design under uncertainty."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     samples: Annotated[int, Field(ge=1)]  #: number of jumps
     failed: Share  #: share of them that do not reach an apex
