@@ -1,7 +1,4 @@
-"""Describe the settings of each search algorithm, as in the ``[algorithm]`` table of a study file.
-
-What a sweep of the paper's weighted search costs, and how a study file's budget is shared out among its weights.
-"""
+"""Settings of each search algorithm, as in the ``[algorithm]`` table of a study file; cost of a weighted sweep."""
 
 import math
 from collections.abc import Mapping
@@ -26,10 +23,7 @@ class AlgorithmSettings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvolutionSettings(AlgorithmSettings):
-    """NSGA-II, SMS-EMOA and AGE-MOEA2 of pymoo, with simulated binary crossover and polynomial mutation.
-
-    The default population was chosen by measurement on Case C.
-    """
+    """pymoo's NSGA-II, SMS-EMOA and AGE-MOEA2; the default population was chosen by measurement on Case C."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
 
@@ -92,10 +86,7 @@ PAPER_ITERATIONS = 200
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WeightedSettings(AlgorithmSettings):
-    """The paper's weighted CMA-ES: cost lambda1 Kh exp(-h) + lambda2 E, one run per weight, one after the other.
-
-    For other objectives than the paper's, ``weighted_cost`` says what the cost is.
-    """
+    """The paper's weighted CMA-ES on ``weighted_cost``: one run per weight, one after the other."""
 
     __pydantic_config__ = ConfigDict(extra="forbid")
 
@@ -142,24 +133,19 @@ DEFAULT_ALGORITHM = SurrogateSettings(name="surrogate")
 
 
 def sweep_evaluations(settings: WeightedSettings) -> int:
-    """The most evaluations that all weights together can take; runs that converge early take fewer."""
+    """Return the most evaluations that all weights together can take; runs that converge early take fewer."""
     return len(settings.height_weights) * settings.population * settings.iterations
 
 
 def share_of(settings: WeightedSettings, evaluations: int) -> int:
-    """Iterations of each weight if all have an equal share of a budget, up to the paper's 200."""
+    """Return the iterations of each weight if all have an equal share of a budget, up to the paper's 200."""
     return min(PAPER_ITERATIONS, evaluations // (len(settings.height_weights) * settings.population))
 
 
 def within_budget(settings: AlgorithmSettings, evaluations: int, *, given: bool, source: str) -> AlgorithmSettings:
-    """Settings with which a weighted sweep comes to its last weight within the budget; those of others as they are.
+    """Return settings with which a weighted sweep reaches its last weight within the budget; others as they are.
 
-    Args:
-        settings: of any search.
-        evaluations: the budget.
-        given: whether the file gives ``iterations``; if not, every weight gets an equal share of the budget, up to the
-            paper's 200 iterations.
-        source: the file, for messages.
+    Every weight gets an equal share of the budget unless the file has ``given`` its iterations.
 
     Raises:
         StudyError: the budget ends before the last weight.

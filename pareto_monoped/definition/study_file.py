@@ -1,7 +1,4 @@
-"""The keys of a study file: their types and defaults, the files that they name, and the table of the algorithm.
-
-The study files that come with the package, to start from.
-"""
+"""The keys of a study file, their types and defaults; the files that it names; the study files of the package."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -33,10 +30,7 @@ START = "case_c"
 
 
 def shipped_studies() -> dict[str, Traversable]:
-    """Name -> file of each study that comes with the package, in alphabetical order.
-
-    An installed package has them among its data, a checkout in ``studies`` beside it.
-    """
+    """Return the file of each study that comes with the package, by name, in alphabetical order."""
     folder = resources.files("pareto_monoped") / "data" / "studies"
     if not folder.is_dir():
         folder = Path(__file__).parents[2] / "studies"
@@ -49,7 +43,7 @@ def _files(folder: Traversable) -> list[Traversable]:
 
 
 def shipped_study(name: str) -> str:
-    """The text of a shipped study.
+    """Return the text of a shipped study.
 
     Raises:
         StudyError: there is none of this name.
@@ -105,7 +99,7 @@ class StudyFile:
 
 
 def file_values(path: Path) -> dict[str, Any]:
-    """The keys of a study file. Paths in it are relative to it, so that a folder with both can be moved.
+    """Read the keys of a study file, whose relative paths count from its folder.
 
     Raises:
         StudyError: no readable TOML.
@@ -119,7 +113,7 @@ def file_values(path: Path) -> dict[str, Any]:
 
 
 def plain_values(values: Mapping[str, Any], source: str) -> dict[str, Any]:
-    """The keys of a study file from a script, which may have paths, arrays and numbers of NumPy.
+    """Return the keys of a study file from a script, which may have paths, arrays and numbers of NumPy.
 
     Raises:
         StudyError: a motor or a calibration itself; a study has their names.
@@ -141,7 +135,7 @@ def plain_values(values: Mapping[str, Any], source: str) -> dict[str, Any]:
 
 
 def with_paths(values: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Keys of a study file with the files of motors and calibrations, named relative to ``folder``, as full paths."""
+    """Return the keys of a study file with the files of motors and calibrations in ``folder`` as full paths."""
 
     def resolved(name: Any) -> Any:
         file = isinstance(name, str) and name.endswith(".toml")
@@ -156,7 +150,7 @@ def with_paths(values: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def with_objectives(values: Mapping[str, Any], objectives: Sequence[str]) -> dict[str, Any]:
-    """The keys of a study file with other objectives; what its reference point says of others is left out."""
+    """Return the keys of a study file with other objectives, without what its reference point says of dropped ones."""
     changed = dict(values) | {"objectives": list(objectives)}
     if isinstance(corner := values.get("reference_point"), dict):
         changed["reference_point"] = {name: value for name, value in flattened(corner).items() if name in objectives}
@@ -164,7 +158,7 @@ def with_objectives(values: Mapping[str, Any], objectives: Sequence[str]) -> dic
 
 
 def algorithm_of(file: StudyFile, corner: ReferencePoint, source: str) -> AlgorithmSettings:
-    """The settings in the table ``algorithm``.
+    """Return the settings in the table ``algorithm``.
 
     Raises:
         StudyError: an unknown algorithm or setting, or a study that this algorithm cannot search.

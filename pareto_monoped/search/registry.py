@@ -20,12 +20,7 @@ from pareto_monoped.search.space import Coordinates, plain_coordinates
 
 
 def make_algorithm(study: Study, coordinates: Coordinates | None = None, own: Any = None) -> Algorithm:
-    """Make the search algorithm that the study's settings name, before its first ``ask``.
-
-    Args:
-        study: its settings.
-        coordinates: what it searches; every free variable within its bounds if None.
-        own: the user's own algorithm, see ``own_algorithm``, where the settings name one.
+    """Make the search algorithm of the study's settings, with every free variable within its bounds by default.
 
     Raises:
         StudyError: the settings name the user's own algorithm, and ``own`` is another or None.

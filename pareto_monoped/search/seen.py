@@ -19,8 +19,8 @@ _SHIFT = np.uint64(33)
 class Seen:
     """A set of designs, compared bit for bit: nearly equal designs are different jumps.
 
-    It keeps a sorted digest of 8 bytes per design, so that a long search needs little memory. Two of 200,000 designs
-    have the same digest with a chance of 1e-9; the second of them would not be simulated.
+    It keeps a sorted digest of 8 bytes per design. Two of 200,000 designs have the same one with a chance of 1e-9; the
+    second would not be simulated.
     """
 
     def __init__(self) -> None:
