@@ -1,7 +1,4 @@
-"""The columns of a trial: name, storage, what it is, and where its values come from. Storage and reader read this.
-
-What a run stores in one transaction.
-"""
+"""The columns of a trial: name, storage, meaning and source of their values; what a run stores in one transaction."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -133,13 +130,13 @@ COLUMNS: tuple[Column, ...] = (*_IDENTITY, *_JUDGEMENT, *_VARIABLES, _MOTOR, *_M
 
 
 def columns_of(study: "Study") -> tuple[Column, ...]:
-    """The columns of a study: all, and those of the measures under uncertainty and own functions that it asks for."""
+    """Return all columns and those of the measures under uncertainty and own functions that a study asks for."""
     asked = (*study.robust_names, *study.own_names)
     return (*COLUMNS, *(_measure(name, measure(name).meaning) for name in asked))
 
 
 def listed(names: Iterable[str]) -> str:
-    """Columns of a table for SQL, in quotes because the names of measures under uncertainty have a dot."""
+    """Return columns of a table for SQL, in quotes because the names of measures under uncertainty have a dot."""
     return ", ".join(f'"{name}"' for name in names)
 
 

@@ -1,7 +1,4 @@
-"""Read the front that a study keeps, without its other trials.
-
-Count the trials that an Optuna user has added to a study, which are ignored here, and warn of them.
-"""
+"""Read the front that a study keeps, without its other trials, and count and name the trials of Optuna users."""
 
 from dataclasses import dataclass
 
@@ -49,11 +46,7 @@ class StudyFront:
 
 
 def read_front(db: StudyPlace) -> StudyFront:
-    """Read the front that a study keeps, and check it; that of a study of format 1 is made from its trials.
-
-    Raises:
-        DatabaseError: missing, not a study, damaged, or of a newer version.
-    """
+    """Read the front that a study keeps, and check it; that of a study of format 1 is made from its trials."""
     with undamaged(db):
         return _read_front(db)
 

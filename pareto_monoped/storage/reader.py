@@ -1,8 +1,7 @@
-"""Read a study database: everything that report, CAD and command line need, by plain SELECTs.
+"""Read a study database by plain SELECTs: everything that report, CAD and command line need.
 
-Stored rows of trials as a data frame: every column there is, each of its type, with the names of the motors.
-
-Measures that databases of earlier versions lack and that follow exactly from what they have.
+Stored rows become a data frame with every column there is, the names of the motors, and measures that follow exactly
+from those that databases of earlier versions have.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -42,16 +41,7 @@ _BLOCK = 20_000
 
 
 def trial_frame(names: list[str], rows: Iterable[tuple[Any, ...]], db: StudyPlace) -> pd.DataFrame:
-    """Trials as read from the database.
-
-    Args:
-        names: of the columns that were read.
-        rows: values of these columns, one row per trial, read block by block.
-        db: the database, for messages.
-
-    Raises:
-        DatabaseError: a value is not of its column's type, or a required column is missing.
-    """
+    """Return trials as a data frame from column names and rows, which are read block by block; refuse damaged ones."""
     left = iter(rows)
     try:
         frames = [_frame(names, list(islice(left, _BLOCK)))]
@@ -85,13 +75,10 @@ def _typed(values: tuple[Any, ...], dtype: str) -> Any:
 
 
 def with_motors(trials: pd.DataFrame, study: Study, meta: StudyMeta, db: StudyPlace) -> pd.DataFrame:
-    """The trials with the names of each one's motors, which the database leaves out where all have the same.
+    """Return the trials with the names of each one's motors, which the database leaves out where all have the same.
 
     The column ``motor`` always says what motors a trial has; ``hip_motor`` and ``knee_motor`` stand only where the
-    study names them.
-
-    Raises:
-        DatabaseError: a trial has a motor that the study does not name.
+    study names them. A trial with another motor raises ``DatabaseError``.
     """
     contents = [meta.contents.get(key, {}) for key in motor_keys(len(study.motors))]
     known = {
@@ -120,7 +107,7 @@ def with_motors(trials: pd.DataFrame, study: Study, meta: StudyMeta, db: StudyPl
 
 
 def with_agility(trials: pd.DataFrame) -> pd.DataFrame:
-    """The trials with ``agility_m_per_s`` wherever height and time of the apex are known.
+    """Return the trials with ``agility_m_per_s`` wherever height and time of the apex are known.
 
     It is the same division as in ``jump.evaluate``, so a filled value equals a stored one to the last bit. The running
     hash is over what is stored: check it before.
@@ -170,11 +157,7 @@ class StudyData:
 
     @cached_property
     def motors(self) -> "tuple[Motor, ...]":
-        """The motors that the study simulates with, as stored: the user's files may be gone or changed.
-
-        Raises:
-            DatabaseError: the stored values are damaged.
-        """
+        """The motors that the study simulates with, as stored: the user's files may be gone or changed."""
         from pareto_monoped.actuator.motors import stored_motor
 
         contents = [self.meta.contents.get(key, {}) for key in motor_keys(len(self.study.motors))]
@@ -272,10 +255,8 @@ class StudyData:
     def front(self, include_ill_conditioned: bool = False, objectives: Objectives | None = None) -> pd.DataFrame:
         """Return the non-dominated feasible trials by the first objective, from its least value to its greatest.
 
-        Args:
-            objectives: other measures than the study's own, under which trials dominate each other.
-            include_ill_conditioned: whether trials that failed their audit may be on the front. Without them, trials
-                that they dominate may enter.
+        Trials dominate each other under the study's own objectives unless others are given. Without ill-conditioned
+        trials, which failed their audit, trials that those dominate may enter.
         """
         eligible = (self.trials["state"] == "feasible").to_numpy()
         if not include_ill_conditioned:
@@ -336,7 +317,7 @@ def _read_study(db: StudyPlace) -> StudyData:
 
 
 def _seal_findings(seals: Seals, trials: pd.DataFrame, rows: Mapping[str, Sequence[Sequence[Any]]]) -> list[str]:
-    """What does not match the running hash of a study of which everything was read; ``rows`` as by ``seals.ROWS``."""
+    """Return what does not match the running hash of a whole study; ``rows`` as by ``seals.ROWS``."""
     numbers = trials["trial"].to_numpy()
     findings = seals.trial_findings({name: trials[name].to_numpy() for name in trials}, numbers)
     if len(numbers) < seals.trials:

@@ -26,9 +26,9 @@ _SCREENED, _AUDITED = 256, 64
 def audit_front(db: StudyPlace, store: Store, simulator: Simulator, notify: Callable[[str], None]) -> None:
     """Audit every design on the front that has no audit yet, and store the audits.
 
-    A design that fails its audit leaves the front, and designs that it dominated may enter. The audit therefore
-    repeats until every design on the front has passed. For most designs one coarse jump shows that they pass
-    (``jump.screen``). The others have a brief audit: ``simulate --audit`` makes the full one.
+    A design that fails its audit leaves the front, and designs that it dominated may enter, so the audit repeats until
+    every design on the front has passed. For most designs one coarse jump shows that they pass (``jump.screen``). The
+    others have a brief audit: ``simulate --audit`` makes the full one.
     """
     from pareto_monoped.jump.screen import screened
 
@@ -74,7 +74,7 @@ def _designs(rows: pd.DataFrame) -> NDArray[np.float64]:
 
 
 def _known(rows: pd.DataFrame) -> "Jumps":
-    """The jumps of trials, which need not be simulated again."""
+    """Return the jumps of trials, which need not be simulated again."""
     from pareto_monoped.jump.audit import Jumps
 
     return Jumps(
@@ -99,7 +99,7 @@ def _store(
 
 
 def _chunks(data: StudyData, trials: pd.DataFrame) -> Iterator[tuple[JointMaps, pd.DataFrame]]:
-    """Trials that are screened together, all with the same motors, and the gearboxes of these motors."""
+    """Yield trials that are screened together, all with the same motors, and the gearboxes of these motors."""
     for kit, places in data.kit_rows(trials):
         for first in range(0, len(places), _SCREENED):
             yield kit, trials.iloc[places[first : first + _SCREENED]]

@@ -1,6 +1,6 @@
 """Run one session of a study: ask, simulate, tell, store. Only this module knows algorithm, simulator and storage.
 
-Ctrl-C in two steps: the first asks for an orderly end, the second ends at once; SIGTERM and SIGHUP likewise.
+The first Ctrl-C asks for an orderly end, the second ends at once; SIGTERM and SIGHUP likewise.
 """
 
 import signal
@@ -156,10 +156,7 @@ class Session:
         return None
 
     def _simulate(self) -> Generation | None:
-        """Ask for a generation, simulate the part that is missing, and tell the scores once it is complete.
-
-        Returns None if the algorithm has no more designs.
-        """
+        """Ask for designs, simulate what is missing, and tell the scores once complete; None if there is no more."""
         proposal = self._algorithm.ask()
         if proposal is None:
             return None
