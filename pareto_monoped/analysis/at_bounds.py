@@ -131,10 +131,7 @@ def _ranges(data: StudyData, front: pd.DataFrame, name: str) -> list[_Range]:
 
 
 def _parts(along: NDArray[np.float64], there: NDArray[np.bool_]) -> tuple[Part, ...]:
-    """Return the parts of the front, divided where no design ``there`` lies within ``_GAP`` of its extent.
-
-    Designs away from the bound may lie between those that are at it, so that each part has its share.
-    """
+    """Return the parts of the front, divided where no design ``there`` lies within ``_GAP`` of its extent."""
     values = np.sort(along[there])
     ends = np.flatnonzero(np.diff(values) > _GAP * float(np.ptp(along)))
     first, last = [0, *(ends + 1).tolist()], [*ends.tolist(), len(values) - 1]

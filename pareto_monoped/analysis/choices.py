@@ -61,10 +61,7 @@ def counterpart(objectives: Objectives) -> Objectives | None:
 
 
 def two_fronts(studies: Sequence[StudyData]) -> tuple[StudyData, StudyData] | None:
-    """Return the studies by mechanical energy and by energy at the battery, if these are the two and else agree.
-
-    Seed, budget, stopping rule, name and description may differ.
-    """
+    """Return the studies by mechanical and by battery energy, if these are the two and else define the same search."""
     by = {data.study.objectives: data for data in studies}
     if len(studies) != 2 or set(by) != {HEIGHT_AND_ENERGY, HEIGHT_AND_BATTERY}:
         return None
@@ -112,10 +109,7 @@ class Competitor:
 
 
 def headline(data: StudyData, knee_trial: int) -> tuple[Competitor, ...]:
-    """Return the paper's design as published and as simulated here, then the front's designs that compete with it.
-
-    The front's design that reaches the height of the paper's is left out if there is none.
-    """
+    """Return the paper's design, published and simulated here, then the front's: as high, if any, and at the knee."""
     several = len(data.study.kits) > 1
     evaluations = Evaluator(data.case_kit, data.calibration)(CASE.design.as_array())
     simulated = Competitor(

@@ -149,11 +149,7 @@ class RobustTrials:
 
 
 def robust_trials(data: StudyData, stored: Mapping[int, Stored]) -> RobustTrials:
-    """Return the trials whose robustness can be compared: those under the settings that most of them share.
-
-    Raises:
-        SelectionError: no trial has a robustness.
-    """
+    """Return the trials whose robustness can be compared, simulated under the most common settings."""
     if not stored:
         raise SelectionError(f"study database {str(data.db)!r}: holds no robustness; simulate it with 'robust' first")
     texts = {trial: json.dumps(one.settings, sort_keys=True) for trial, one in stored.items()}
@@ -183,11 +179,7 @@ def robust_trials(data: StudyData, stored: Mapping[int, Stored]) -> RobustTrials
 
 
 def robust_front(data: StudyData, trials: RobustTrials) -> pd.DataFrame:
-    """Return the trials that no other dominates under uncertainty, as ``StudyData.front``.
-
-    Raises:
-        SelectionError: all fail too often, or none is feasible as designed.
-    """
+    """Return the trials that no other dominates under uncertainty, as ``StudyData.front``; refuse if none is able."""
     objectives, rows = data.study.objectives, trials.rows
     if len(rows) == 0:
         raise SelectionError(

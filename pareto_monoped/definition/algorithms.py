@@ -52,10 +52,9 @@ class SurrogateSettings(AlgorithmSettings):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OptunaSettings(AlgorithmSettings):
-    """Optuna's NSGA-II and TPE samplers, which are asked for ``population`` designs at a time.
+    """Optuna's NSGA-II and TPE samplers, asked for ``population`` designs at a time, by default 50 and 8.
 
-    For NSGA-II this is the population (default 50, Optuna's own). TPE chooses one design at a time without knowing the
-    scores of the others in its batch, so its batches are small.
+    TPE chooses each design without knowing the scores of the others in its batch, so its batches are small.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid")
@@ -143,12 +142,9 @@ def share_of(settings: WeightedSettings, evaluations: int) -> int:
 
 
 def within_budget(settings: AlgorithmSettings, evaluations: int, *, given: bool, source: str) -> AlgorithmSettings:
-    """Return settings with which a weighted sweep reaches its last weight within the budget; others as they are.
+    """Return settings whose weighted sweep reaches its last weight within the budget; others as they are.
 
-    Every weight gets an equal share of the budget unless the file has ``given`` its iterations.
-
-    Raises:
-        StudyError: the budget ends before the last weight.
+    Every weight gets an equal share of the budget unless the file has ``given`` its iterations; too many are refused.
     """
     if not isinstance(settings, WeightedSettings):
         return settings

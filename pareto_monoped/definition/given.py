@@ -45,11 +45,7 @@ MOST = 100_000_000
 
 
 def count_of(what: str, given: Any) -> int | None:
-    """Return a whole number from 1 to ``MOST``, or None where none is given.
-
-    Raises:
-        InputError: something else.
-    """
+    """Return a whole number from 1 to ``MOST``, or None where none is given; refuse all else."""
     if given is None:
         return None
     if isinstance(given, bool) or not isinstance(given, Integral) or not 1 <= int(given) <= MOST:

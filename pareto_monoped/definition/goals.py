@@ -213,11 +213,7 @@ def stored_objectives(objectives: Objectives) -> dict[str, str] | list[str]:
 
 
 def corner_of(table: Mapping[str, Any], objectives: Objectives, *, source: str) -> ReferencePoint:
-    """Return the reference point from its table, with the values of the table of measures for those left out.
-
-    Raises:
-        StudyError: a measure that is no objective, or a value out of range.
-    """
+    """Return the reference point from its table; what is left out is as in the table of measures."""
     for name, value in flattened(table).items():
         if name not in objectives.names:
             raise StudyError(f"{source}: {unknown_name('measure in reference_point', name, objectives.names)}")
@@ -231,11 +227,7 @@ def corner_of(table: Mapping[str, Any], objectives: Objectives, *, source: str) 
 
 
 def flattened(table: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a table in which ``height_m.p05 = x``, in TOML a table within the table, has the key "height_m.p05".
-
-    Raises:
-        StudyError: a key that is there in both forms.
-    """
+    """Return a table in which ``height_m.p05 = x``, a table within it, has the key "height_m.p05"; refuse both."""
     flat: dict[str, Any] = {}
     for key, value in table.items():
         inner = {name: value[name] for name in STATISTICS if name in value} if isinstance(value, Mapping) else {}

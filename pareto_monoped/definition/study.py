@@ -227,13 +227,9 @@ def load_study(
     objectives: Sequence[str] | None = None,
     strength: bool | None = None,
 ) -> Study:
-    """Read the study in a TOML file, with other values for some of its keys.
+    """Read the study in a TOML file, with other values for some of its keys; raise ``StudyError`` as ``from_toml``.
 
     With other ``objectives``, what the file's reference point says of dropped ones is left out.
-
-    Raises:
-        StudyError: an unknown key, a wrong type, impossible bounds, a budget that ends before the last weight of a
-            weighted search, or no readable TOML.
     """
     values = file_values(path)
     if evaluations is not None:
@@ -248,13 +244,7 @@ def load_study(
 
 
 def filled(values: dict[str, Any], *, source: str) -> Study:
-    """Return the study of a file's keys, with the defaults of a file for those left out.
-
-    Raises:
-        StudyError: an unknown key, a wrong type, or impossible bounds.
-        MotorError: an unknown name of a motor; its file is read only when the study runs.
-        CalibrationError: an unknown name of a calibration, likewise.
-    """
+    """Return the study of a file's keys, with the defaults of a file for those left out; see ``Study.define``."""
     calibration = str(values.get("calibration"))
     defaults = {"rules": rules_for(calibration), "strength": strength_for(calibration), "gear_list": True}
     values = defaults | values

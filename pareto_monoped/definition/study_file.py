@@ -43,11 +43,7 @@ def _files(folder: Traversable) -> list[Traversable]:
 
 
 def shipped_study(name: str) -> str:
-    """Return the text of a shipped study.
-
-    Raises:
-        StudyError: there is none of this name.
-    """
+    """Return the text of a shipped study; refuse an unknown name."""
     known = shipped_studies()
     if name not in known:
         raise StudyError(unknown_name("study", name, known))
@@ -99,11 +95,7 @@ class StudyFile:
 
 
 def file_values(path: Path) -> dict[str, Any]:
-    """Read the keys of a study file, whose relative paths count from its folder.
-
-    Raises:
-        StudyError: no readable TOML.
-    """
+    """Read the keys of a study file, whose relative paths count from its folder; refuse what is no TOML."""
     if not path.exists() and (name := path.name.removesuffix(".toml")) in shipped_studies():
         raise StudyError(
             f"study file {str(path)!r}: no such file; 'pareto-monoped init {name}' copies the one that comes with the "
@@ -113,11 +105,7 @@ def file_values(path: Path) -> dict[str, Any]:
 
 
 def plain_values(values: Mapping[str, Any], source: str) -> dict[str, Any]:
-    """Return the keys of a study file from a script, which may have paths, arrays and numbers of NumPy.
-
-    Raises:
-        StudyError: a motor or a calibration itself; a study has their names.
-    """
+    """Return the keys of a study file from a script: paths, arrays and numbers of NumPy, but no motor itself."""
     from pareto_monoped.actuator.motor import Motor
     from pareto_monoped.jump.calibration import Calibration
 
@@ -158,11 +146,7 @@ def with_objectives(values: Mapping[str, Any], objectives: Sequence[str]) -> dic
 
 
 def algorithm_of(file: StudyFile, corner: ReferencePoint, source: str) -> AlgorithmSettings:
-    """Return the settings in the table ``algorithm``.
-
-    Raises:
-        StudyError: an unknown algorithm or setting, or a study that this algorithm cannot search.
-    """
+    """Return the settings in the table ``algorithm``; refuse unknown ones, and a study that they cannot search."""
     table = file.algorithm
     if not table:
         return DEFAULT_ALGORITHM

@@ -88,11 +88,7 @@ def _limits(name: str) -> tuple[float, float]:
 
 
 def number_of(key: str, name: str, given: Any) -> float:
-    """Return a value of the variable ``name``, which messages call ``key``.
-
-    Raises:
-        StudyError: no number, or one out of range.
-    """
+    """Return a value of the variable ``name``, which messages call ``key``; refuse one out of range."""
     low, high = _limits(name)
     allowed = f"a number from {low:g} to {high:g}"
     if isinstance(given, bool) or not isinstance(given, int | float) or not low <= given <= high:
@@ -141,11 +137,7 @@ def text_of(motor: Named, hip: Named, knee: Named) -> str:
 
 
 def named_motors(motor: Any, hip: Any, knee: Any, source: str) -> dict[str, Named]:
-    """Return the motors as a study keeps them, by ``MOTOR_KEYS``; one motor that both joints have stands for both.
-
-    Raises:
-        StudyError: what is no name and no list of different names; or keys that exclude or need each other.
-    """
+    """Return the motors as a study keeps them, by ``MOTOR_KEYS``; one motor of both joints stands for both."""
     joints = {"hip_motor": hip, "knee_motor": knee}
     given = [key for key, value in joints.items() if value is not None]
     if not given:

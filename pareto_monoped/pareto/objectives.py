@@ -89,10 +89,7 @@ def reference_point(objectives: Objectives, given: Mapping[str, float] | None = 
 
 
 def hypervolume(points: Points, reference: ReferencePoint) -> float:
-    """Compute the area or volume that ``points`` dominate, bounded by ``reference``; larger is better.
-
-    Points are in stored units with their natural sign. Source: Zitzler and Thiele 1998; for three objectives moocore.
-    """
+    """Compute the area or volume that ``points`` in stored units dominate (Zitzler and Thiele 1998)."""
     less_is_better = reference.objectives.minimised(points)
     corner = reference.objectives.minimised(np.array(reference.values))
     inside = less_is_better[(less_is_better < corner).all(axis=1)]

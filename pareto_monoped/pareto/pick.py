@@ -52,10 +52,7 @@ def weighted(values: Floats, weights: tuple[float, ...], objectives: Objectives)
 
 
 def compromise(values: Floats, weights: tuple[float, ...], objectives: Objectives) -> Scored:
-    """Compute scores by the distance from the best of every objective (Zeleny 1973, Compromise programming).
-
-    Each difference is scaled to the extent of the front and weighted, the distance is Euclidean.
-    """
+    """Compute scores by the weighted Euclidean distance from the best of every objective, scaled (Zeleny 1973)."""
     distance = np.linalg.norm(losses(values, objectives) * _checked("compromise", weights, objectives), axis=1)
     best = objectives.signs * objectives.minimised(values).min(axis=0)
     ideal = objectives.text(best.tolist())
@@ -69,7 +66,7 @@ def compromise(values: Floats, weights: tuple[float, ...], objectives: Objective
 
 
 def nearest(rows: "DataFrame", wish: Mapping[str, float]) -> Scored:
-    """Compute scores by the greatest shortfall from the wish in any measure (Wierzbicki 1980, The use of reference objectives).
+    """Compute scores by the greatest shortfall from the wish (Wierzbicki 1980, The use of reference objectives).
 
     Shortfalls are scaled to the extent of the front. A wish that several designs surpass goes to the one that surpasses
     it most. Of designs with the same greatest shortfall, the one with the least sum of them comes first.
@@ -120,10 +117,7 @@ class Pick:
 
 
 def pick(front: "DataFrame", selector: Selector, objectives: Objectives = HEIGHT_AND_ENERGY) -> Pick:
-    """Pick the design of ``front`` that ``selector`` asks for.
-
-    The front has one row per design, in any order, with the column ``trial``, one per objective, and those that
-    conditions and wishes name.
+    """Pick the design of ``front``, one row per design in any order, that ``selector`` asks for.
 
     Raises:
         SelectionError: the front is empty, none of its designs fits, or the selector does not suit the objectives.

@@ -44,10 +44,7 @@ class MaxEnergy:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Within:
-    """The design whose measure is at ``value`` or better, and that is best in the first other objective.
-
-    ``value`` is in the measure's stored unit.
-    """
+    """The design whose measure is at ``value`` or better, and that is best in the first other objective."""
 
     measure: str
     value: float
@@ -72,10 +69,7 @@ class Weights:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Compromise:
-    """The design with the least weighted distance from the best of every objective.
-
-    Unlike ``Weights`` it also finds designs where the front is bent the other way.
-    """
+    """The design with the least weighted distance from the best of every objective, also on bent parts of a front."""
 
     values: tuple[float, ...]
 

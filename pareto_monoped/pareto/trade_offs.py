@@ -149,9 +149,9 @@ class OneMore:
 def one_more(front: "DataFrame", trial: int, objectives: Objectives) -> OneMore:
     """Return what the next step in the first objective costs at a trial of the front.
 
-    Differences between neighbours on a front jump, because a search finds designs at random distances. The cost is
-    therefore that of the cheapest design that is better by at least a whole step. With three objectives the cheapest is
-    that with the least sum of losses in the other two, scaled to the front's extent.
+    Neighbours on a front are at random distances, so the cost is that of the cheapest design that is better by at least
+    a whole step: with three objectives that with the least sum of losses in the other two, scaled to the front's
+    extent.
     """
     values = front[list(objectives.names)].to_numpy(dtype=np.float64)
     row = int(np.flatnonzero(front["trial"].to_numpy() == trial)[0])

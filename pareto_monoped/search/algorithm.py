@@ -121,10 +121,7 @@ class Space:
         return self.picked(self.choice_for(name), values)
 
     def gear_of(self, name: str, values: Floats) -> NDArray[np.intp]:
-        """Return the place of each point's gearbox in its motor's list, shape (n, d) -> (n,).
-
-        Every gearbox of a list owns an equal share of the values from 0 to 1.
-        """
+        """Return the place of each point's gearbox in its motor's list, shape (n,); all own equal shares of 0 to 1."""
         last = self.last_gears(name)[self.motor_of(name, values)]
         share = values[:, self.names.index(name)]
         return np.minimum(np.floor(share * (last + 1)), last).astype(np.intp)

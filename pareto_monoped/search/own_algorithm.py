@@ -19,11 +19,7 @@ _SAME = 1e-9
 
 
 def own_algorithm_name(given: object) -> str:
-    """Return "own:" and the name of the class, under which a study stores an algorithm of the user's own.
-
-    Raises:
-        StudyError: it can neither be asked and told nor make something that can.
-    """
+    """Return "own:" and the name of the class; refuse what neither has ``ask`` and ``tell`` nor can be called."""
     if not (callable(given) or (hasattr(given, "ask") and hasattr(given, "tell"))):
         allowed = "a name, a mapping of settings, or an object with ask and tell or a function that makes one"
         raise StudyError(complaint("algorithm", given, allowed, "give one of these"))

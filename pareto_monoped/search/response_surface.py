@@ -170,11 +170,7 @@ def _actuators(space: Space, tables: Mapping[str, Floats], name: str, values: Fl
 
 
 def fitted(points: Floats, targets: Floats, weights: Floats) -> Floats:
-    """Return coefficients for ``cubic_values``, shape (t, k), of points, (n, f), targets, (n, k), and weights, (n,).
-
-    Raises:
-        numpy.linalg.LinAlgError: a target, a weight or a feature is not a number.
-    """
+    """Return coefficients, (t, k), of points, (n, f), targets, (n, k), and weights, (n,), for ``cubic_values``."""
     gram, right = _normal_equations(points, targets, weights)
     # The first term is the constant, whose mean square is the sum of the weights; it is not held back.
     ridge = np.full(len(gram), _RIDGE * weights.sum())

@@ -63,10 +63,7 @@ class OwnEvaluations(Evaluations):
 
 
 def with_functions(evaluate: Callable[..., Evaluations], functions: Functions) -> Callable[..., Evaluations]:
-    """Return what evaluates a study's trials, its own functions included.
-
-    In the first generation, the functions must give some jumps alone the same values as among the others.
-    """
+    """Return what evaluates a study's trials and its own functions; the first generation shows if these mix jumps."""
     if not functions:
         return evaluate
     unchecked = dict(functions)
@@ -87,11 +84,7 @@ def with_functions(evaluate: Callable[..., Evaluations], functions: Functions) -
 
 
 def called(function: OwnFunction, table: Jumps, failed: NDArray[np.bool_]) -> Floats:
-    """Return the values of an own function, shape (n,).
-
-    Raises:
-        StudyError: it fails, or returns something else than n numbers that are finite where the jump did not fail.
-    """
+    """Return the values of an own function, shape (n,); refuse all but numbers, finite where the jump did not fail."""
     n, source = len(failed), f"own function {name_of(function)!r}"
     try:
         # A copy of the table: what a function changes must not reach the database.
@@ -146,11 +139,7 @@ def name_of(function: object) -> str:
 
 
 def own_name(function: object) -> str:
-    """Return the name of the measure that a function is.
-
-    Raises:
-        StudyError: no function, or one whose name cannot be stored, such as a lambda.
-    """
+    """Return the name of the measure that a function is; refuse one that cannot be stored, such as a lambda's."""
     if not callable(function) or isinstance(function, type):
         allowed = "the name of a measure or a function of the jumps"
         raise StudyError(complaint("objective or constraint", function, allowed, "give one of these"))
@@ -165,11 +154,7 @@ def own_name(function: object) -> str:
 
 
 def listed(what: str, given: Any) -> Sequence[Any]:
-    """Return functions as a list; one alone is a list of one.
-
-    Raises:
-        StudyError: neither a list nor a function.
-    """
+    """Return functions as a list; one alone is a list of one."""
     if callable(given):
         return [given]
     if isinstance(given, str | Mapping) or not isinstance(given, Sequence):
@@ -178,11 +163,7 @@ def listed(what: str, given: Any) -> Sequence[Any]:
 
 
 def functions_of(given: Sequence[object]) -> dict[str, OwnFunction]:
-    """Return functions by the names of their measures.
-
-    Raises:
-        StudyError: no function, one without a usable name, or two of the same name.
-    """
+    """Return functions by the names of their measures, each of which may be used once."""
     found: dict[str, OwnFunction] = {}
     for function in given:
         name = own_name(function)

@@ -84,17 +84,11 @@ def run(
 ) -> RunSummary:
     """Run a study into a database, or continue it where it stopped.
 
-    Args:
-        study: the definition.
-        db: its database; created if missing. A server's address without a schema gets one after the study's name.
-        evaluations: total number of trials, instead of the study's.
-        seed: instead of the study's.
-        workers: number of threads that simulate, all cores if None. It does not change the trials.
-        executor: does the jumps in their place, here or elsewhere; it does not change the trials either.
-        progress: called after each stored generation. If it returns True, the run ends with the next generation, which
-            is computed by then; it is stored and told of, too.
-        notify: called with a line for the user, for example on Ctrl-C.
-        own: functions, algorithm and calibration of the user's own.
+    The database is created if missing; a server's address without a schema gets one after the study's name.
+    ``evaluations``, the total number of trials, and ``seed`` replace the study's. Neither ``workers``, threads that
+    simulate, nor an ``executor`` in their place changes the trials. ``progress`` is called after each stored
+    generation; if it returns True, the run ends with the next generation, which is computed by then, stored and told
+    of. ``notify`` gets lines for the user, for example on Ctrl-C.
 
     Raises:
         StudyError: the study in the database has other settings; the message shows the difference. Or ``own`` is not

@@ -68,9 +68,6 @@ def sobol_samples(uncertainty: Uncertainty, count: int = DEFAULT_SAMPLES, seed: 
     """Draw scrambled Sobol points (Owen 1998, by SciPy) on all ranges; ``count`` is a power of two.
 
     The same seed gives the same samples whatever the ranges are, and for every design.
-
-    Raises:
-        InputError: ``count`` is no power of two.
     """
     from scipy.stats import qmc
 
@@ -93,11 +90,7 @@ def samples_at(uncertainty: Uncertainty, points: Floats) -> Samples:
 
 
 def variations(samples: Samples, designs: int, calibration: Calibration) -> Variations:
-    """Return the variations of all samples of each of some designs, shape (designs * samples, ...), design by design.
-
-    Raises:
-        InputError: a delay that is longer than the controller can keep.
-    """
+    """Return all samples' variations, shape (designs * samples, ...), design by design; refuse too long a delay."""
     period = calibration.simulation.period_s
     longest = float(samples.values["delay_s"].max()) + calibration.simulation.delay_s
     if round(longest / period) > MOST_DELAY:
@@ -149,10 +142,7 @@ class RobustEvaluations(Evaluations):
 
 @dataclass(frozen=True, kw_only=True)  # without slots: a cached property needs a place to keep its value
 class RobustEvaluator:
-    """Evaluates designs as designed, and as built in all samples.
-
-    To the last bit, the result of a design does not depend on the other designs or on the number of workers.
-    """
+    """Evaluates designs as designed and as built in all samples, each independently of the others to the last bit."""
 
     evaluator: Evaluator  #: simulates
     sampling: Sampling  #: ranges, samples and seed

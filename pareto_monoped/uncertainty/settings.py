@@ -82,11 +82,7 @@ def uncertainty_of(values: Mapping[str, Any], *, source: str, error: type[InputE
 
 
 def load_uncertainty(path: Path | None = None) -> Uncertainty:
-    """Read the shipped ranges, or those of a file: what it leaves out is as shipped.
-
-    Raises:
-        InputError: no readable file, an unknown key, or a wrong value.
-    """
+    """Read the shipped ranges, or those of a file: what it leaves out is as shipped."""
     shipped = read_shipped(SHIPPED, what=WHAT)
     if path is None:
         return uncertainty_of(shipped, source=WHAT)
@@ -123,11 +119,7 @@ class Sampling:
 
 
 def sampling_of(table: Mapping[str, Any], *, source: str) -> Sampling:
-    """Return the table ``[uncertainty]`` of a study; what it leaves out is as shipped.
-
-    Raises:
-        StudyError: an unknown key, a wrong range, or a number of samples that Sobol points cannot have.
-    """
+    """Return the table ``[uncertainty]`` of a study; what it leaves out is as shipped."""
     given = dict(table)
     samples, seed = given.pop("samples", SEARCH_SAMPLES), given.pop("seed", DEFAULT_SEED)
     whole = isinstance(samples, int) and not isinstance(samples, bool)
