@@ -60,11 +60,7 @@ def scale_of(data: StudyData, trials: pd.DataFrame) -> Scale:
 
 
 def differences(scale: Scale, trials: pd.DataFrame, row: int, given: int) -> tuple[str, ...]:
-    """Return how the designs in two rows differ, the greatest difference first.
-
-    There are at most ``_MOST_TOLD`` phrases, such as "shank-long, 0.306 and 0.401 m" or "knee gearbox 6.1 instead of
-    8.4".
-    """
+    """Return how the designs in two rows differ, in at most ``_MOST_TOLD`` phrases, the greatest difference first."""
     apart = np.abs(scale.points[row] - scale.points[given])
     apart[scale.categories] = apart[scale.categories] != 0.0
     design, other = trials.iloc[row], trials.iloc[given]

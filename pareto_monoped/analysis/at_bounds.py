@@ -1,6 +1,6 @@
 """Limits that hold a design where it is: bounds or ends of lists of gearboxes, and constraints."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -85,18 +85,9 @@ def at_bounds(data: StudyData, front: pd.DataFrame) -> list[AtBound]:
                 there = at & one.own
                 share = float(there.mean())
                 if share >= _WORTH_TELLING:
-                    parts = _parts(along, there)
-                    found.append(
-                        AtBound(
-                            name=name,
-                            side=side,
-                            bound=bound,
-                            share=share,
-                            parts=parts,
-                            given=given if one.listed else None,
-                            motor=one.motor,
-                        )
-                    )
+                    parts, ends = _parts(along, there), given if one.listed else None
+                    at_bound = AtBound(name=name, side=side, bound=bound, share=share, parts=parts, given=ends)
+                    found.append(replace(at_bound, motor=one.motor))
     return sorted(found, key=lambda one: -one.share)
 
 
@@ -179,7 +170,10 @@ def binding_limits(data: StudyData, trial: int) -> list[str]:
     A search would leave such a limit if it could, so that widening it may lead to a better design.
     """
     row = data.trials[data.trials["trial"] == trial]
-    return [*_bounds(data, row), *_constraints(data, row)]
+    return [
+        *(f"{found.name} at {found.words}{found.within}" for found in at_bounds(data, row)),
+        *_constraints(data, row),
+    ]
 
 
 def front_alone(front: StudyFront) -> StudyData:
@@ -194,10 +188,6 @@ def front_alone(front: StudyFront) -> StudyData:
         checkpoint=Checkpoint(generation=0, evaluations=0, state={}),
         sealed=front.sealed,
     )
-
-
-def _bounds(data: StudyData, row: pd.DataFrame) -> list[str]:
-    return [f"{found.name} at {found.words}{found.within}" for found in at_bounds(data, row)]
 
 
 def _constraints(data: StudyData, row: pd.DataFrame) -> list[str]:

@@ -28,15 +28,12 @@ map may be a little more than the upper bound. Our own choice: half an interval 
 
 def implausible(data: StudyData) -> list[str]:
     """Return one line per kind of thing that cannot be, with the first row that has it; none if all is plausible."""
+    exists = data.audits["trial"].isin(data.trials["trial"])
     return [
         *_trial_findings(data),
         *_history_findings(data),
-        *(f"audit of trial {n}, which does not exist" for n in data.audits["trial"][~_exists(data)].head(1)),
+        *(f"audit of trial {n}, which does not exist" for n in data.audits["trial"][~exists].head(1)),
     ]
-
-
-def _exists(data: StudyData) -> "pd.Series[bool]":
-    return data.audits["trial"].isin(data.trials["trial"])
 
 
 def _trial_findings(data: StudyData) -> Iterator[str]:

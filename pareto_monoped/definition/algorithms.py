@@ -18,14 +18,13 @@ class AlgorithmSettings:
     """Base class of the settings of all algorithms."""
 
     __slots__ = ()
+    __pydantic_config__ = ConfigDict(extra="forbid")
     name: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvolutionSettings(AlgorithmSettings):
     """pymoo's NSGA-II, SMS-EMOA and AGE-MOEA2; the default population was chosen by measurement on Case C."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: Literal["nsga2", "sms_emoa", "age_moea2"]
     population: Annotated[int, Field(ge=4, le=100_000, multiple_of=2)] = 40
@@ -37,8 +36,6 @@ class EvolutionSettings(AlgorithmSettings):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SurrogateSettings(AlgorithmSettings):
     """Evolution that ranks many offspring by a cheap model and simulates the most promising."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: Literal["surrogate"]
     #: designs simulated in each of the first 50 generations; later ones have twice as many
@@ -57,8 +54,6 @@ class OptunaSettings(AlgorithmSettings):
     TPE chooses each design without knowing the scores of the others in its batch, so its batches are small.
     """
 
-    __pydantic_config__ = ConfigDict(extra="forbid")
-
     name: Literal["optuna_nsga2", "optuna_tpe"]
     population: Annotated[int, Field(ge=1, le=100_000)] | None = None
 
@@ -72,8 +67,6 @@ class OptunaSettings(AlgorithmSettings):
 class RandomSettings(AlgorithmSettings):
     """Designs drawn uniformly within the bounds: the yardstick that every other search must beat."""
 
-    __pydantic_config__ = ConfigDict(extra="forbid")
-
     name: Literal["random"]
     population: Annotated[int, Field(ge=1, le=100_000)] = 40
 
@@ -86,8 +79,6 @@ PAPER_ITERATIONS = 200
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WeightedSettings(AlgorithmSettings):
     """The paper's weighted CMA-ES on ``weighted_cost``: one run per weight, one after the other."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: Literal["weighted_cmaes"]
     #: weight of the first objective in each run (lambda1); the other's is 1 - lambda1
@@ -113,8 +104,6 @@ OWN_ALGORITHM = "own:"
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OwnSettings(AlgorithmSettings):
     """An algorithm of the user's own, of which a study knows the name alone."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid")
 
     name: Annotated[str, Field(pattern=rf"^{OWN_ALGORITHM}[A-Za-z_][A-Za-z0-9_]{{0,99}}$")]
 

@@ -195,18 +195,11 @@ class Study:
         """
         plain = asdict(self)
         del plain["shared_iterations"]
-        if self.rules == "paper":
-            del plain["rules"]
-        if not self.strength:
-            del plain["strength"]
-        if not self.gear_list:
-            del plain["gear_list"]
-        if self.uncertainty is None:
-            del plain["uncertainty"]
-        else:
+        if self.uncertainty is not None:
             plain["uncertainty"] = self.uncertainty.as_dict()
-        for key in MOTOR_KEYS:
-            if plain[key] is None:
+        defaults = {"rules": "paper", "strength": False, "gear_list": False, "uncertainty": None}
+        for key, default in (defaults | dict.fromkeys(MOTOR_KEYS)).items():
+            if plain[key] == default:
                 del plain[key]
         plain["variables"] = {
             name: asdict(v) if isinstance(v, Bounds) else v
@@ -232,12 +225,8 @@ def load_study(
     With other ``objectives``, what the file's reference point says of dropped ones is left out.
     """
     values = file_values(path)
-    if evaluations is not None:
-        values["evaluations"] = evaluations
-    if seed is not None:
-        values["seed"] = seed
-    if strength is not None:
-        values["strength"] = strength
+    given = {"evaluations": evaluations, "seed": seed, "strength": strength}
+    values |= {key: value for key, value in given.items() if value is not None}
     if objectives is not None:
         values = with_objectives(values, objectives)
     return filled(values, source=f"study file {str(path)!r}")

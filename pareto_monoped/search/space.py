@@ -17,7 +17,6 @@ from pymoo.core.problem import Problem
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
 
-from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.ratiomap import ActuatorMap, JointMaps, Maps, joint_maps
 from pareto_monoped.definition.study import Study
 from pareto_monoped.definition.variables import Bounds
@@ -173,12 +172,8 @@ def gear_list(actuator_map: ActuatorMap, bounds: Bounds) -> tuple[Gear, ...]:
     for index in chosen[chosen >= 0]:
         actuator = actuator_map.entries[index].actuator
         assert actuator is not None
-        gears.append(_gear(actuator))
+        gears.append(Gear(ratio=actuator.ratio, mass_kg=actuator.mass_kg))
     return tuple(sorted(gears, key=lambda gear: gear.ratio))
-
-
-def _gear(actuator: Actuator) -> Gear:
-    return Gear(ratio=actuator.ratio, mass_kg=actuator.mass_kg)
 
 
 @dataclass(frozen=True, kw_only=True)  # without slots: the cached property needs a place to keep its value

@@ -42,13 +42,10 @@ def is_address(text: str) -> bool:
 
 
 def server_of(text: str) -> Server:
-    """Return the server at an address of the form ``_SHAPE``.
+    """Return the server at an address of the form ``_SHAPE``; messages never have the text of a wrong one.
 
     Besides ``schema``, everything is as libpq takes it, which also looks for passwords in ``PGPASSWORD`` and
     ``~/.pgpass``.
-
-    Raises:
-        DatabaseError: it cannot be one; the message never has the text, which may hold a password.
     """
     found = _ADDRESS.fullmatch(text)
     if found is None or found["kind"] not in _KINDS:

@@ -108,10 +108,7 @@ def error_behind(error: BaseException | None) -> BaseException | None:
 
 @contextmanager
 def undamaged(place: Path | Server) -> Iterator[None]:
-    """Say that a database is damaged where its content makes the block fail.
-
-    Numbers that are text, text that is no JSON, rows that are missing: a study as this package writes it has none.
-    """
+    """Raise ``DatabaseError`` where damaged content of a database makes the block fail."""
     try:
         yield
     except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError) as error:
@@ -121,11 +118,7 @@ def undamaged(place: Path | Server) -> Iterator[None]:
 
 
 def check(connection: Connection, place: Path | Server) -> int:
-    """Check that a database is a study of a known version, and return the version of its format.
-
-    Raises:
-        DatabaseError: not a study, or of a newer version.
-    """
+    """Check that a database is a study of a known version, and return the version of its format."""
     kinds = connection.objects()
     tables = {name for kind, name in kinds if kind == "table"}
     active = [name for kind, name in kinds if kind in ("view", "trigger")]

@@ -291,9 +291,6 @@ def roll_back(storage: FileStorage) -> None:
 
     A run changes the journal mode at its start and end, which SQLite does under such a journal. A read-only connection
     cannot roll back, and would call the database read-only for ever.
-
-    Raises:
-        DatabaseError: the folder cannot be written to.
     """
     path = storage.place
     journal = Path(f"{path.resolve()}-journal")

@@ -129,13 +129,9 @@ def rows_of(connection: Connection, names: Sequence[str], trials: Sequence[int])
 
 
 def front_trials(db: StudyPlace) -> dict[int, str]:
-    """Read each trial of the kept front -> its objectives in words, by the first objective, for completion in a shell.
+    """Read each trial of the kept front -> its objectives in words, by the first objective, for a shell.
 
-    They are not checked against the study's seals, which takes longer than a key press.
-
-    Raises:
-        DatabaseError: missing, not a study, damaged, of a newer version, or of format 1, which kept no front.
-        ServerError: the server is away.
+    They are not checked against the study's seals, which takes longer than a key press. Format 1 kept no front.
     """
     with storage_of(db).reading() as connection:
         (study,) = connection.execute("SELECT value FROM monoped_meta WHERE key = 'study'").fetchone()

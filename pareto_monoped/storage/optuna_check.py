@@ -138,10 +138,9 @@ def _digest_findings(connection: Connection, numbers: Sequence[int], seals: Seal
 
 
 def repair(db: StudyPlace) -> tuple[int, ...]:
-    """Drop foreign trials from Optuna's tables, number the others from 0 on, and return the numbers that were dropped.
+    """Drop foreign trials from Optuna's tables, number the others from 0 on, and return the dropped numbers.
 
-    Raises:
-        DatabaseError: not a study, in use, or damaged: then nothing is changed.
+    Nothing is changed in a study that is in use or damaged.
     """
     read_study(db)
     with storage_of(db).locked():

@@ -176,11 +176,7 @@ class StudyData:
 
     @cached_property
     def calibration(self) -> "Calibration":
-        """The calibration that the study simulates with, as stored.
-
-        Raises:
-            DatabaseError: the stored values are damaged.
-        """
+        """The calibration that the study simulates with, as stored."""
         from pareto_monoped.jump.calibration import calibration_of
 
         return calibration_of(self.meta.contents.get("calibration", {}), source=self._source, error=DatabaseError)
@@ -273,19 +269,15 @@ def read_study(db: StudyPlace) -> StudyData:
         DatabaseError: missing, not a study, damaged, or of a newer version.
     """
     with undamaged(db):
-        return _read_study(db)
-
-
-def _read_study(db: StudyPlace) -> StudyData:
-    with storage_of(db).reading() as connection:
-        sealed = has_seals(connection)
-        rows = {table: connection.execute(sql).fetchall() for table, sql in ROWS.items() if sealed or table != "front"}
-        cursor = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
-        trials = trial_frame(connection.columns("monoped_trials"), cursor, db)
-        seals = read_seals(connection, db) if sealed else None
-    meta = meta_of_rows(rows["meta"], db)
-    study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
-    try:
+        with storage_of(db).reading() as connection:
+            sealed = has_seals(connection)
+            tables = [table for table in ROWS if sealed or table != "front"]
+            rows = {table: connection.execute(ROWS[table]).fetchall() for table in tables}
+            cursor = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
+            trials = trial_frame(connection.columns("monoped_trials"), cursor, db)
+            seals = read_seals(connection, db) if sealed else None
+        meta = meta_of_rows(rows["meta"], db)
+        study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
         _, generation, evaluations, state = rows["checkpoint"][0]
         checkpoint = Checkpoint(generation=int(generation), evaluations=int(evaluations), state=parsed_json(state))
         audits = [
@@ -295,25 +287,20 @@ def _read_study(db: StudyPlace) -> StudyData:
         history = pd.DataFrame(rows["history"], columns=list(_HISTORY)).astype(_HISTORY)
         if not np.isfinite(history.to_numpy(dtype=np.float64)).all():
             raise ValueError("a hypervolume or time of its history is not finite")
-    except (IndexError, KeyError, TypeError, ValueError, RecursionError) as error:
-        raise DatabaseError(
-            f"study database {str(db)!r}: is damaged ({type(error).__name__}: {error}); restore a copy"
-        ) from None
-    named = with_agility(with_motors(trials, study, meta, db))
-    if seals is not None and (findings := _seal_findings(seals, trials, rows)):
-        raise damaged(db, findings)
-    links = 0 if seals is None else seals.links
-    return StudyData(
-        db=db,
-        study=study,
-        meta=meta,
-        trials=named,
-        history=history,
-        audits=pd.DataFrame(audits) if audits else pd.DataFrame({"trial": [], "well_conditioned": []}),
-        checkpoint=checkpoint,
-        sealed=sealed,
-        links=links,
-    )
+        named = with_agility(with_motors(trials, study, meta, db))
+        if seals is not None and (findings := _seal_findings(seals, trials, rows)):
+            raise damaged(db, findings)
+        return StudyData(
+            db=db,
+            study=study,
+            meta=meta,
+            trials=named,
+            history=history,
+            audits=pd.DataFrame(audits) if audits else pd.DataFrame({"trial": [], "well_conditioned": []}),
+            checkpoint=checkpoint,
+            sealed=sealed,
+            links=0 if seals is None else seals.links,
+        )
 
 
 def _seal_findings(seals: Seals, trials: pd.DataFrame, rows: Mapping[str, Sequence[Sequence[Any]]]) -> list[str]:

@@ -70,10 +70,7 @@ def row_digest(values: Sequence[Any]) -> str:
 
 
 def trial_digests(names: Sequence[str], values: Mapping[str, Any]) -> list[str]:
-    """Return digests of trials, the same for trials in memory and as read again.
-
-    None and NaN are the same among a column's values, and so are None and an empty text.
-    """
+    """Return digests of trials, the same in memory and as read again; None is the same as NaN and as empty text."""
     numbers = [name for name in names if name not in _TEXTS]
     # SQLite keeps neither the sign of zero nor the payload of a NaN.
     matrix = np.array([np.asarray(values[name], dtype=np.float64) for name in numbers]).T + 0.0

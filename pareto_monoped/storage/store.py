@@ -47,10 +47,7 @@ _OUR_TABLES += SEALS + FRONT
 
 
 def create_database(path: StudyPlace, study: Study, meta: StudyMeta, state: Mapping[str, Any]) -> None:
-    """Create a study database without trials at a vacant place whose lock is held; after an error there is none.
-
-    ``state`` is that of the algorithm before its first ``ask``.
-    """
+    """Create a study without trials at a vacant place whose lock is held, with an algorithm's first ``state``."""
     columns = ", ".join(f'"{column.name}" {column.sql}' for column in columns_of(study))
     with storage_of(path).creating() as draft:
         create_tables(draft, study, {"study": meta.study, "versions": meta.versions, "hash": meta.hash})
@@ -76,11 +73,7 @@ class Store:
         known_schemas: Sequence[str] = KNOWN_SCHEMAS,
         lock: StudyLock | None = None,
     ) -> None:
-        """Open an existing study for writing; ``lock`` is told what is safe.
-
-        Raises:
-            DatabaseError: not a study, damaged, read-only, or of a newer version.
-        """
+        """Open an existing study for writing; ``lock`` is told what is safe."""
         self.path = path
         self._objectives, self._columns = study.objectives, columns_of(study)
         self._lock = lock

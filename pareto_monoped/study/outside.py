@@ -72,8 +72,8 @@ class JumpFunction:
         self._coordinates = simulator.coordinates(study)
         self._own = tuple(own)
         self._own_limits = tuple(own_limits)
-        self.space: Space = self._coordinates.space
-        self.names = (*study.objectives.names, *map(name_of, self._own))
+        self.space: Space = self._coordinates.space  #: what is searched; gearboxes and motors by their position
+        self.names = (*study.objectives.names, *map(name_of, self._own))  #: of the objectives
 
     @property
     def constraint_names(self) -> tuple[str, ...]:
@@ -81,11 +81,7 @@ class JumpFunction:
         return (*(limit.key for limit in self._study.constraints.limits), *map(name_of, self._own_limits))
 
     def __call__(self, values: Floats) -> Judged:
-        """Let the designs at ``values`` jump, shape (n, d); whole numbers may be any numbers that round to them.
-
-        Raises:
-            StudyError: an own function returned something else than n numbers.
-        """
+        """Let the designs at ``values`` jump, shape (n, d); whole numbers may be any numbers that round to them."""
         points = self.space.snap(np.atleast_2d(np.asarray(values, dtype=np.float64)))
         where = self._coordinates
         designs = where.designs(points)

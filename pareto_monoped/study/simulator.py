@@ -75,10 +75,7 @@ def evaluation_of(study: Study, evaluator: Evaluator) -> Evaluate:
 def load_simulator(
     study: Study, *, workers: int, executor: Executor | None = None, calibration: Calibration | None = None
 ) -> Simulator:
-    """Make the simulator of a study file: read the motor and the calibration that it names.
-
-    An ``executor`` shares out the jumps in place of threads; a ``calibration`` of the user's own replaces the named
-    one.
+    """Make the simulator of a study file: read the motor, and the calibration unless the user's own is given.
 
     Raises:
         MotorError, CalibrationError: an unknown name or an unusable file, or a motor without any gearbox.

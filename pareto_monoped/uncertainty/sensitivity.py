@@ -1,6 +1,6 @@
 """Which factors move the measures of a design most: Sobol' indices, the change from end to end, and their records."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Annotated, Any, Literal
 
@@ -223,22 +223,18 @@ class Sensitivity:
 def sensitivity_of(about: About, factors: Sequence[Factor], found: Indices, names: Sequence[str]) -> Sensitivity:
     """Return the record of what was found of d factors and s measures, called ``names``."""
 
-    def influences(column: int) -> Iterator[tuple[str, Influence]]:
-        for row, name in enumerate(names):
-            yield (
-                name,
-                Influence(
-                    change=float(found.effect[row, column]),
-                    first=float(found.first[row, column]),
-                    total=float(found.total[row, column]),
-                    error=float(found.error[row, column]),
-                ),
-            )
+    def influence(row: int, column: int) -> Influence:
+        parts = (found.effect, found.first, found.total, found.error)
+        change, first, total, error = (float(part[row, column]) for part in parts)
+        return Influence(change=change, first=first, total=total, error=error)
 
     return Sensitivity(
         about=about,
         blocks=found.blocks,
         jumps=found.jumps,
         failed=found.failed,
-        factors=tuple(FactorInfluence(factor=factor, measures=dict(influences(k))) for k, factor in enumerate(factors)),
+        factors=tuple(
+            FactorInfluence(factor=factor, measures={name: influence(row, k) for row, name in enumerate(names)})
+            for k, factor in enumerate(factors)
+        ),
     )
