@@ -1,6 +1,6 @@
 """Limits that hold a design where it is: bounds or ends of lists of gearboxes, and constraints."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
@@ -86,8 +86,11 @@ def at_bounds(data: StudyData, front: pd.DataFrame) -> list[AtBound]:
                 share = float(there.mean())
                 if share >= _WORTH_TELLING:
                     parts, ends = _parts(along, there), given if one.listed else None
-                    at_bound = AtBound(name=name, side=side, bound=bound, share=share, parts=parts, given=ends)
-                    found.append(replace(at_bound, motor=one.motor))
+                    found.append(
+                        AtBound(
+                            name=name, side=side, bound=bound, share=share, parts=parts, given=ends, motor=one.motor
+                        )
+                    )
     return sorted(found, key=lambda one: -one.share)
 
 
