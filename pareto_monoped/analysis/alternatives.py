@@ -1,7 +1,4 @@
-"""Alternatives to a picked design: trials that cost about as much and are quite different robots.
-
-How two designs of a study differ: on the scale of the variables' ranges, and in plain words.
-"""
+"""Alternatives to a picked design: trials that cost about as much and are quite different robots."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -40,7 +37,7 @@ class Scale:
 
 
 def scale_of(data: StudyData, trials: pd.DataFrame) -> Scale:
-    """The scale of some trials of a study."""
+    """Return the scale of some trials of a study."""
     names, columns = list(data.study.free), []
     for name in names:
         values = trials[name].to_numpy(dtype=np.float64)
@@ -63,17 +60,7 @@ def scale_of(data: StudyData, trials: pd.DataFrame) -> Scale:
 
 
 def differences(scale: Scale, trials: pd.DataFrame, row: int, given: int) -> tuple[str, ...]:
-    """How the design in a row differs from a given one, the greatest difference first.
-
-    Args:
-        scale: of the trials.
-        trials: the designs.
-        row: position of the design.
-        given: position of the other one.
-
-    Returns:
-        At most ``_MOST_TOLD`` phrases, such as "shank-long, 0.306 and 0.401 m" or "knee gearbox 6.1 instead of 8.4".
-    """
+    """Return how the designs in two rows differ, in at most ``_MOST_TOLD`` phrases, the greatest difference first."""
     apart = np.abs(scale.points[row] - scale.points[given])
     apart[scale.categories] = apart[scale.categories] != 0.0
     design, other = trials.iloc[row], trials.iloc[given]
@@ -105,7 +92,7 @@ def _phrase(name: str, design: pd.Series, other: pd.Series) -> str:
 
 
 def _proportions(design: pd.Series) -> str:
-    """Which link is the long one."""
+    """Return which link is the long one."""
     thigh, shank = (float(design[length]) for length in LENGTHS)
     if shank > _LONGER * thigh:
         return "shank-long"
@@ -134,7 +121,7 @@ class Alternative:
     audited: bool  #: whether it has an audit. Audits are for the front; an alternative is often just behind it.
 
     def text(self) -> str:
-        """How it differs and its price, such as "shank-long, 0.306 and 0.401 m; 0.8 percent more energy"."""
+        """Return how it differs and its price, such as "shank-long, 0.306 and 0.401 m; 0.8 percent more energy"."""
         changed = [
             f"{100.0 * abs(change):.1f} percent {'more' if change > 0.0 else 'less'} {entry.words}"
             for entry, change in zip(self.objectives.measures, self.changes, strict=True)
@@ -143,7 +130,7 @@ class Alternative:
         return "; ".join([*self.differs, ", ".join(changed) or "the same price"])
 
     def as_dict(self) -> dict[str, object]:
-        """As JSON values."""
+        """Return JSON values."""
         return {
             "trial": self.trial,
             **dict(zip(self.objectives.names, self.values, strict=True)),
@@ -164,22 +151,11 @@ def alternatives(
     conditions: Sequence[Condition] = (),
     rows: pd.DataFrame | None = None,
 ) -> tuple[Alternative, ...]:
-    """The designs of a study that cost about as much as one of its trials and differ most in their variables.
+    """Return the designs that cost about as much as a trial and differ most in their variables, these first.
 
     All feasible trials that have not failed an audit count, not only the front, because a different robot that is worse
-    by half a percent is never on it.
-
-    Args:
-        data: the study.
-        trial: the picked one.
-        count: how many at most.
-        tolerance: share of the picked design's value by which each objective may be worse.
-        conditions: which alternatives must meet, too.
-        rows: the trials to compare, with the measures to compare them by, such as those under uncertainty; the study's
-            trials if None.
-
-    Returns:
-        By ``pareto.alternatives.most_different``, the most different first.
+    by half a percent is never on it. Each objective may be worse by the share ``tolerance``. ``rows`` are the trials to
+    compare, such as those with measures under uncertainty; the study's if None.
 
     Raises:
         SelectionError: no such trial, or one without a jump.
@@ -221,7 +197,7 @@ def _within(
     tolerance: float,
     conditions: Sequence[Condition],
 ) -> pd.DataFrame:
-    """The other feasible trials whose price is within the tolerance, the cheapest first."""
+    """Return the other feasible trials whose price is within the tolerance, the cheapest first."""
     able = (trials["state"] == "feasible").to_numpy() & (trials["trial"] != trial).to_numpy()
     able &= ~trials["trial"].isin(data.ill_conditioned).to_numpy()
     able &= fitting(trials, conditions)
@@ -232,12 +208,12 @@ def _within(
 
 
 def _changes(values: np.ndarray, of: np.ndarray) -> tuple[float, ...]:
-    """Changes as shares; a change from 0 is infinite."""
+    """Return changes as shares; a change from 0 is infinite."""
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = np.where(values == of, 0.0, (values - of) / np.abs(of))
     return tuple(shares.tolist())
 
 
 def _finite(value: float) -> float | None:
-    """A number for JSON, which knows no infinity."""
+    """Return a number for JSON, which knows no infinity."""
     return value if np.isfinite(value) else None

@@ -1,7 +1,4 @@
-"""Free variables that sit at a bound, or at an end of their list of gearboxes, along the front.
-
-Which limits hold a design where it is: bounds of its variables and constraints of its study.
-"""
+"""Limits that hold a design where it is: bounds or ends of lists of gearboxes, and constraints."""
 
 from dataclasses import dataclass
 
@@ -73,7 +70,7 @@ class _Range:
 
 
 def at_bounds(data: StudyData, front: pd.DataFrame) -> list[AtBound]:
-    """The free variables that are at a bound on at least ``_WORTH_TELLING`` of the front, the greatest share first."""
+    """Return the free variables at a bound on at least ``_WORTH_TELLING`` of the front, the greatest share first."""
     along = front[data.study.objectives.names[0]].to_numpy(dtype=np.float64)
     found = []
     for name in data.study.free:
@@ -88,23 +85,17 @@ def at_bounds(data: StudyData, front: pd.DataFrame) -> list[AtBound]:
                 there = at & one.own
                 share = float(there.mean())
                 if share >= _WORTH_TELLING:
-                    parts = _parts(along, there)
+                    parts, ends = _parts(along, there), given if one.listed else None
                     found.append(
                         AtBound(
-                            name=name,
-                            side=side,
-                            bound=bound,
-                            share=share,
-                            parts=parts,
-                            given=given if one.listed else None,
-                            motor=one.motor,
+                            name=name, side=side, bound=bound, share=share, parts=parts, given=ends, motor=one.motor
                         )
                     )
     return sorted(found, key=lambda one: -one.share)
 
 
 def bound_lines(data: StudyData, front: pd.DataFrame) -> dict[str, str]:
-    """Each variable that is at a bound -> the sentence that says at which, and where; the greatest share first."""
+    """Return each variable at a bound -> the sentence that says at which, and where; the greatest share first."""
     if len(front) == 0:
         return {}
     entry = measure(data.study.objectives.names[0])
@@ -117,7 +108,7 @@ def bound_lines(data: StudyData, front: pd.DataFrame) -> dict[str, str]:
 
 
 def _ranges(data: StudyData, front: pd.DataFrame, name: str) -> list[_Range]:
-    """The ranges of a variable: one for each motor that decides its gearboxes, else one; none without a choice."""
+    """Return the ranges of a variable, one for each motor that decides its gearboxes, that leave a choice."""
     where = data.coordinates
     limits = where.motor_limits(name)
     if limits is None:
@@ -134,14 +125,7 @@ def _ranges(data: StudyData, front: pd.DataFrame, name: str) -> list[_Range]:
 
 
 def _parts(along: NDArray[np.float64], there: NDArray[np.bool_]) -> tuple[Part, ...]:
-    """Parts of the front that are divided where no design at the bound lies within ``_GAP`` of the front's extent.
-
-    Designs away from the bound may lie between those that are at it, so that each part has its share.
-
-    Args:
-        along: first objective of the front's designs, shape (n,).
-        there: which of them are at the bound, shape (n,).
-    """
+    """Return the parts of the front, divided where no design ``there`` lies within ``_GAP`` of its extent."""
     values = np.sort(along[there])
     ends = np.flatnonzero(np.diff(values) > _GAP * float(np.ptp(along)))
     first, last = [0, *(ends + 1).tolist()], [*ends.tolist(), len(values) - 1]
@@ -156,7 +140,7 @@ def _parts(along: NDArray[np.float64], there: NDArray[np.bool_]) -> tuple[Part, 
 
 
 def _line(found: list[AtBound], entry: Measure) -> str:
-    """The sentence on all bounds of a variable."""
+    """Return the sentence on all bounds of a variable."""
     within = found[0].within
     subject, comma = (f"{found[0].name}{within},", ",") if within else (found[0].name, "")
     clauses = [
@@ -166,7 +150,7 @@ def _line(found: list[AtBound], entry: Measure) -> str:
 
 
 def _where(found: AtBound, entry: Measure) -> str:
-    """The parts of the front, such as "all of height 0.600 to 0.700 m, 86 % of 0.900 to 1.000 m"."""
+    """Return the parts of the front, such as "all of height 0.600 to 0.700 m, 86 % of 0.900 to 1.000 m"."""
     texts = []
     for part in found.parts:
         ends = [entry.text(part.least), entry.text(part.greatest)]
@@ -184,20 +168,19 @@ _BINDING_AT = 0.01
 
 
 def binding_limits(data: StudyData, trial: int) -> list[str]:
-    """The limits that a design is at, one phrase for each: bounds first, then constraints; none if it is free.
+    """Return a phrase for each limit that a trial is at: bounds first, then constraints; none if it is free.
 
     A search would leave such a limit if it could, so that widening it may lead to a better design.
-
-    Args:
-        data: the study.
-        trial: number of a trial that jumped.
     """
     row = data.trials[data.trials["trial"] == trial]
-    return [*_bounds(data, row), *_constraints(data, row)]
+    return [
+        *(f"{found.name} at {found.words}{found.within}" for found in at_bounds(data, row)),
+        *_constraints(data, row),
+    ]
 
 
 def front_alone(front: StudyFront) -> StudyData:
-    """A study of which only the front was read: without its other trials, its history, audits and checkpoint."""
+    """Return a study of which only the front was read: without its other trials, history, audits and checkpoint."""
     return StudyData(
         db=front.db,
         study=front.study,
@@ -208,10 +191,6 @@ def front_alone(front: StudyFront) -> StudyData:
         checkpoint=Checkpoint(generation=0, evaluations=0, state={}),
         sealed=front.sealed,
     )
-
-
-def _bounds(data: StudyData, row: pd.DataFrame) -> list[str]:
-    return [f"{found.name} at {found.words}{found.within}" for found in at_bounds(data, row)]
 
 
 def _constraints(data: StudyData, row: pd.DataFrame) -> list[str]:

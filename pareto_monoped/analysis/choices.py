@@ -1,9 +1,4 @@
-"""Two fronts of one robot, by mechanical energy and by energy at the battery: what choosing by the first costs.
-
-The short answer of a study: the paper's best design beside the designs of the front that compete with it.
-
-Trials behind the front, such as alternatives, which can be chosen by their number like designs of the front.
-"""
+"""What choosing by mechanical energy costs at the battery; competitors of the paper's design; numbered trials."""
 
 import contextlib
 from collections.abc import Sequence
@@ -60,16 +55,13 @@ class Pair:
 
 
 def counterpart(objectives: Objectives) -> Objectives | None:
-    """The same search by the other energy; None if it is not one of height against one energy."""
+    """Return the same search by the other energy; None if it is not one of height against one energy."""
     pairs = {HEIGHT_AND_ENERGY: HEIGHT_AND_BATTERY, HEIGHT_AND_BATTERY: HEIGHT_AND_ENERGY}
     return pairs.get(objectives)
 
 
 def two_fronts(studies: Sequence[StudyData]) -> tuple[StudyData, StudyData] | None:
-    """The studies by mechanical energy and by energy at the battery, if there are just these two and else they agree.
-
-    Seed, budget, stopping rule, name and description may differ.
-    """
+    """Return the studies by mechanical and by battery energy, if these are the two and else define the same search."""
     by = {data.study.objectives: data for data in studies}
     if len(studies) != 2 or set(by) != {HEIGHT_AND_ENERGY, HEIGHT_AND_BATTERY}:
         return None
@@ -80,13 +72,7 @@ def two_fronts(studies: Sequence[StudyData]) -> tuple[StudyData, StudyData] | No
 
 
 def choices(mechanical: StudyData, battery: StudyData, heights_m: Sequence[float] = HEIGHTS_M) -> list[Pair]:
-    """The designs that both fronts offer for each height.
-
-    Args:
-        mechanical: a study of height and mechanical energy.
-        battery: one of height and energy at the battery.
-        heights_m: least heights.
-    """
+    """Return the designs that the fronts of both studies offer for each least height."""
     return [
         Pair(height_m=height, mechanical=_choice(mechanical, height), battery=_choice(battery, height))
         for height in heights_m
@@ -123,15 +109,7 @@ class Competitor:
 
 
 def headline(data: StudyData, knee_trial: int) -> tuple[Competitor, ...]:
-    """The paper's design as published and simulated with the study's motor and calibration, then the front's designs.
-
-    Args:
-        data: the study.
-        knee_trial: number of the trial at the knee of the front.
-
-    Returns:
-        Four designs. The front's design that reaches the height of the paper's is left out if there is none.
-    """
+    """Return the paper's design, published and simulated here, then the front's: as high, if any, and at the knee."""
     several = len(data.study.kits) > 1
     evaluations = Evaluator(data.case_kit, data.calibration)(CASE.design.as_array())
     simulated = Competitor(
@@ -161,19 +139,13 @@ def headline(data: StudyData, knee_trial: int) -> tuple[Competitor, ...]:
 
 
 def numbered(selector: Selector | None) -> int | None:
-    """The number of the trial that a selector names; None if it chooses in another way."""
+    """Return the number of the trial that a selector names; None if it chooses in another way."""
     chooser = selector.chooser if isinstance(selector, Among) else selector
     return chooser.number if isinstance(chooser, Trial) else None
 
 
 def with_numbered(data: StudyData, front: pd.DataFrame, selector: Selector | None) -> pd.DataFrame:
-    """The front, and after it the trial that a selector names, if it is feasible and has not failed an audit.
-
-    Args:
-        data: the study.
-        front: of the study, or of some of its trials under uncertainty.
-        selector: what is asked for.
-    """
+    """Return the front, and after it the trial that a selector names, if it is feasible and has not failed an audit."""
     number = numbered(selector)
     if number is None or (front["trial"] == number).any() or number in data.ill_conditioned:
         return front
@@ -182,7 +154,7 @@ def with_numbered(data: StudyData, front: pd.DataFrame, selector: Selector | Non
 
 
 def better_than(rows: pd.DataFrame, trial: int, objectives: Objectives) -> list[int]:
-    """The trials that dominate one of them: no worse in any objective, and better in one."""
+    """Return the trials that dominate one of them: no worse in any objective, and better in one."""
     loss = objectives.minimised(rows[list(objectives.names)].to_numpy(dtype=np.float64))
     own = loss[np.flatnonzero(rows["trial"] == trial)[0]]
     found = (loss <= own).all(axis=1) & (loss < own).any(axis=1)

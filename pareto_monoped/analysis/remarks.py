@@ -1,7 +1,4 @@
-"""What a user should hear of a study's result: what keeps it from its front, and which bounds limit the front.
-
-Why a study has no front: the limits that its designs miss, and the design that comes nearest to all of them.
-"""
+"""What a user should hear of a study's result: what keeps it from its front, and which bounds limit the front."""
 
 import math
 
@@ -23,7 +20,7 @@ _DIGITS = 4
 
 
 def why_no_front(data: StudyData) -> str:
-    """The limits that stand in the way of a study with trials, but without a front.
+    """Return the limits that stand in the way of a study with trials, but without a front.
 
     These are the limits that every design misses, each with the value nearest to it. If there are none, every limit is
     met by some design, but no design meets all: then all limits that are missed, and the trial of least violation.
@@ -49,15 +46,7 @@ def why_no_front(data: StudyData) -> str:
 
 
 def refuse_empty(front: pd.DataFrame, study: StudyData | StudyPlace) -> None:
-    """Refuse to choose from a front without designs.
-
-    Args:
-        front: of the study, or what may be chosen besides.
-        study: the study, or where it is.
-
-    Raises:
-        SelectionError: there are no designs; it says why.
-    """
+    """Refuse to choose from a front without designs, and say why there are none."""
     if len(front):
         return
     data = study if isinstance(study, StudyData) else read_study(study)
@@ -67,7 +56,7 @@ def refuse_empty(front: pd.DataFrame, study: StudyData | StudyPlace) -> None:
 
 
 def _together(jumped: pd.DataFrame, counts: dict[Limit, int], violation: NDArray[np.float64]) -> str:
-    """All limits that are missed, by how many miss them, and the trial that comes nearest to all of them."""
+    """Return all limits that are missed, by how many miss them, and the trial that comes nearest to all of them."""
     told = sorted((limit for limit, count in counts.items() if count), key=lambda limit: -counts[limit])
     listed = ", ".join(f"{counts[limit]} miss {_limit(limit)}" for limit in told)
     nearest = jumped.iloc[int(np.argmin(violation))]
@@ -83,7 +72,7 @@ def _limit(limit: Limit) -> str:
 
 
 def _closest(values: NDArray[np.float64], limit: Limit) -> str:
-    """The value nearest to a limit that all miss, such as "the least is 4.218 kg"."""
+    """Return the value nearest to a limit that all miss, such as "the least is 4.218 kg"."""
     if np.isnan(values).all():
         return "no design has a value"
     word, value = ("least", np.nanmin(values)) if limit.side == "max" else ("greatest", np.nanmax(values))
@@ -91,7 +80,7 @@ def _closest(values: NDArray[np.float64], limit: Limit) -> str:
 
 
 def _value(value: float, limit: Limit) -> str:
-    """A value with its unit, in as many digits as tell it from the limit."""
+    """Return a value with its unit, in as many digits as tell it from the limit."""
     if np.isnan(value):
         return "without a value"
     unit = measure(limit.measure).unit
@@ -105,14 +94,10 @@ _MOST_LINES = 4
 
 
 def remarks(data: StudyData, front: pd.DataFrame | None = None) -> list[str]:
-    """The few lines that follow a run, warnings first; none if there is nothing to say.
+    """Return the few lines that follow a run, warnings first; none if there is nothing to say.
 
     All variables at bounds are named: those that are there on most of the front with a line each, the others in the
     last line.
-
-    Args:
-        data: the study.
-        front: its front, if it is at hand.
     """
     front = data.front() if front is None else front
     first, of_variables = warnings(data, front), bound_lines(data, front)
@@ -124,14 +109,14 @@ def remarks(data: StudyData, front: pd.DataFrame | None = None) -> list[str]:
 
 
 def warnings(data: StudyData, front: pd.DataFrame) -> list[str]:
-    """What keeps a study from its result: no feasible design, a budget that ended early, or a corner amid the front."""
+    """Return what keeps a study from its result: no feasible design, an early end, or a corner amid the front."""
     if len(data.trials) == 0:
         return []
     return [*_sweep(data), *_beyond_corner(data, front)] if len(front) else [why_no_front(data)]
 
 
 def _sweep(data: StudyData) -> list[str]:
-    """A line if the budget of a weighted search ended before its last weight, or is more than all weights take."""
+    """Return a line if a weighted search's budget ended before its last weight, or is more than all weights take."""
     settings = data.study.algorithm
     if not isinstance(settings, WeightedSettings) or not data.meta.finished:
         return []
@@ -152,7 +137,7 @@ def _sweep(data: StudyData) -> list[str]:
 
 
 def _beyond_corner(data: StudyData, front: pd.DataFrame) -> list[str]:
-    """A line if designs of the front are no better than the reference point, with the values that lie behind them."""
+    """Return a line if designs of the front are no better than the reference point, with the values behind them."""
     corner, beyond, cures = data.reference_point, np.full(len(front), False), []
     for entry, limit in zip(corner.objectives.measures, corner.values, strict=True):
         sign = -1.0 if entry.direction == "maximise" else 1.0
@@ -171,7 +156,7 @@ def _beyond_corner(data: StudyData, front: pd.DataFrame) -> list[str]:
 
 
 def _further(entry: Measure, sign: float, worst: float) -> float | None:
-    """The next number of one digit that is worse than ``worst``, a value times its sign; None if none is allowed."""
+    """Return the next number of one digit that is worse than ``worst``, a value times its sign, if one is allowed."""
     step = 10.0 ** math.floor(math.log10(abs(worst))) if worst else 1.0
     further = sign * (math.floor(round(worst / step, 9)) + 1.0) * step
     return None if further < 0.0 and not is_own(entry.name) else further

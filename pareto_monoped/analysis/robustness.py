@@ -1,7 +1,4 @@
-"""Simulate trials of a study again under uncertainty, and store what that says of them.
-
-The front by what nineteen of twenty built robots keep, from what is stored of the robustness of trials.
-"""
+"""Simulate trials again under uncertainty and store the result; the front by what nineteen of twenty robots keep."""
 
 import json
 from collections import Counter
@@ -49,20 +46,11 @@ def robust(
     executor: Executor | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> dict[int, Robustness]:
-    """Simulate trials under uncertainty and store their robustness; what is stored already is not simulated again.
+    """Simulate trials, by default the front, under uncertainty; store their robustness unless it is there already.
 
-    All designs have the same samples, so that differences between them are of the designs. The same seed gives the
-    same numbers, whatever the number of workers.
-
-    Args:
-        db: the study's database.
-        uncertainty: the ranges.
-        trials: numbers of trials that jump; None: the front.
-        samples: per design, a power of two of at least ``LEAST_SAMPLES``.
-        seed: of the samples.
-        workers: threads, all cores if None.
-        executor: does the jumps in their place.
-        progress: called with the number of designs done and of all after each stored chunk.
+    All designs have the same samples, so that differences between them are of the designs. The same seed gives the same
+    numbers, whatever the number of workers. ``samples`` is a power of two of at least ``LEAST_SAMPLES``. After each
+    stored chunk, ``progress`` is called with the number of designs done and of all.
 
     Raises:
         InputError: too few samples, or ranges that the calibration cannot have.
@@ -100,11 +88,7 @@ def robust(
 
 
 def simulated(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator, samples: Samples) -> dict[int, Robustness]:
-    """The robustness of some trials by number.
-
-    Raises:
-        StudyError: a design without variation does not jump as it is stored.
-    """
+    """Return the robustness of some trials by number."""
     designs = rows[list(NAMES)].to_numpy(dtype=np.float64)
     motors = data.kit_numbers(rows)
     refuse_other_jumps(data, rows, evaluator)
@@ -121,11 +105,7 @@ def simulated(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator, samples
 
 
 def refuse_other_jumps(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator) -> None:
-    """Refuse trials that do not jump as they are stored.
-
-    Raises:
-        StudyError: the message names the first one.
-    """
+    """Refuse trials that do not jump as they are stored; name the first one."""
     height_m = evaluator(rows[list(NAMES)].to_numpy(dtype=np.float64), data.kit_numbers(rows)).height_m
     stored = rows["height_m"].to_numpy(dtype=np.float64)
     other = np.flatnonzero(height_m != stored)
@@ -169,15 +149,7 @@ class RobustTrials:
 
 
 def robust_trials(data: StudyData, stored: Mapping[int, Stored]) -> RobustTrials:
-    """The trials whose robustness can be compared: those under the settings that most of them share.
-
-    Args:
-        data: the study.
-        stored: robustness of some of its trials.
-
-    Raises:
-        SelectionError: no trial has a robustness.
-    """
+    """Return the trials whose robustness can be compared, simulated under the most common settings."""
     if not stored:
         raise SelectionError(f"study database {str(data.db)!r}: holds no robustness; simulate it with 'robust' first")
     texts = {trial: json.dumps(one.settings, sort_keys=True) for trial, one in stored.items()}
@@ -207,11 +179,7 @@ def robust_trials(data: StudyData, stored: Mapping[int, Stored]) -> RobustTrials
 
 
 def robust_front(data: StudyData, trials: RobustTrials) -> pd.DataFrame:
-    """The trials that no other dominates under uncertainty, as ``StudyData.front``.
-
-    Raises:
-        SelectionError: all fail too often, or none is feasible as designed.
-    """
+    """Return the trials that no other dominates under uncertainty, as ``StudyData.front``; refuse if none is able."""
     objectives, rows = data.study.objectives, trials.rows
     if len(rows) == 0:
         raise SelectionError(

@@ -54,18 +54,11 @@ def sensitivity(
     workers: int | None = None,
     executor: Executor | None = None,
 ) -> tuple[Sensitivity, Sensitivity]:
-    """The sensitivity of a trial to its variables and to what is uncertain, stored; what is there is not made again.
+    """Return the sensitivity of a trial to its variables and to what is uncertain, and store what is new.
 
-    Args:
-        db: the study's database.
-        trial: its number.
-        ranges: of what is uncertain.
-        blocks: base samples, a power of two; each takes as many jumps as there are factors, and two more.
-        within: how far each free variable moves to either side, as a share of its range; a gearbox moves by one place
-            in the list. The bounds of the study hold.
-        seed: of the samples.
-        workers: threads, all cores if None. It does not change the numbers.
-        executor: does the jumps in their place.
+    Each of the ``blocks``, base samples whose number is a power of two, takes two more jumps than there are factors.
+    Each free variable moves to either side by ``within``, a share of its range, and a gearbox by one place in the list,
+    within the bounds of the study. The number of workers does not change the numbers.
 
     Raises:
         InputError: a number out of range, or too many jumps that fail.
@@ -111,7 +104,7 @@ def sensitivity(
 def _of_assumptions(
     data: StudyData, row: pd.DataFrame, evaluator: Evaluator, names: Sequence[str], ranges: Uncertainty
 ) -> tuple[tuple[Factor, ...], Simulate]:
-    """What is uncertain and does vary, and the design's jumps as built."""
+    """Return what is uncertain and does vary, and the function of the design's jumps as built."""
     every = factors_of(ranges)
     moving = [k for k, factor in enumerate(every) if factor.lower < factor.upper]
 
@@ -128,7 +121,7 @@ def _of_assumptions(
 def _of_variables(
     data: StudyData, row: pd.DataFrame, evaluator: Evaluator, names: Sequence[str], within: float
 ) -> tuple[tuple[Factor, ...], Simulate]:
-    """The free variables around the design, and the jumps of the designs there."""
+    """Return the free variables around the design, and the function of the jumps of the designs there."""
     places = [_places(data, row, name, within) for name in data.study.free]
 
     def simulate(points: Floats) -> tuple[NDArray[np.bool_], Floats]:
@@ -146,7 +139,7 @@ def _of_variables(
 
 
 def _places(data: StudyData, row: pd.DataFrame, name: str, within: float) -> tuple[Factor, Floats | None]:
-    """A free variable as a factor; for a gearbox also the ratios that it goes through."""
+    """Return a free variable as a factor; for a gearbox also the ratios that it goes through."""
     value, bounds = float(row[name].iloc[0]), data.study.variables[name]
     assert isinstance(bounds, Bounds)
     variable = VARIABLES[NAMES.index(name)]

@@ -1,7 +1,4 @@
-"""Check a whole study: running hash, numbering, plausible values, Optuna's tables against ours, jumps anew.
-
-Whether what a study holds can be: numbering, states, finite and possible values, the kept front.
-"""
+"""Check a whole study: running hash, numbering, plausible values, Optuna's tables against ours, jumps anew."""
 
 from collections.abc import Iterator
 from concurrent.futures import Executor
@@ -30,16 +27,13 @@ map may be a little more than the upper bound. Our own choice: half an interval 
 
 
 def implausible(data: StudyData) -> list[str]:
-    """One line per kind of thing that cannot be, with the first row that has it; none if all is plausible."""
+    """Return one line per kind of thing that cannot be, with the first row that has it; none if all is plausible."""
+    exists = data.audits["trial"].isin(data.trials["trial"])
     return [
         *_trial_findings(data),
         *_history_findings(data),
-        *(f"audit of trial {n}, which does not exist" for n in data.audits["trial"][~_exists(data)].head(1)),
+        *(f"audit of trial {n}, which does not exist" for n in data.audits["trial"][~exists].head(1)),
     ]
-
-
-def _exists(data: StudyData) -> "pd.Series[bool]":
-    return data.audits["trial"].isin(data.trials["trial"])
 
 
 def _trial_findings(data: StudyData) -> Iterator[str]:
@@ -106,13 +100,7 @@ class Verification:
 
 
 def verify(db: StudyPlace, *, simulate: int = 0, workers: int = 1, executor: Executor | None = None) -> Verification:
-    """Check a study.
-
-    Args:
-        db: its database.
-        simulate: how many of its trials to simulate again, evenly spread over all; they must be equal to the last bit.
-        workers: threads that simulate.
-        executor: does the jumps in their place.
+    """Check a study, and simulate some of its trials again, evenly spread; they must be equal to the last bit.
 
     Raises:
         DatabaseError: it cannot be read at all, or its rows do not match their hash.
@@ -174,11 +162,7 @@ def _jump_findings(
 
 
 def require_sound(db: StudyPlace, verification: Verification) -> None:
-    """Raise for a study that is not sound.
-
-    Raises:
-        DatabaseError: names the first finding and counts the others.
-    """
+    """Raise ``DatabaseError`` for a study that is not sound: the first finding and the number of others."""
     if verification.findings:
         more = len(verification.findings) - 1
         raise DatabaseError(

@@ -1,7 +1,4 @@
-"""Describe the settings of each search algorithm, as in the ``[algorithm]`` table of a study file.
-
-What a sweep of the paper's weighted search costs, and how a study file's budget is shared out among its weights.
-"""
+"""Settings of each search algorithm, as in the ``[algorithm]`` table of a study file; cost of a weighted sweep."""
 
 import math
 from collections.abc import Mapping
@@ -55,10 +52,9 @@ class SurrogateSettings(AlgorithmSettings):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OptunaSettings(AlgorithmSettings):
-    """Optuna's NSGA-II and TPE samplers, which are asked for ``population`` designs at a time.
+    """Optuna's NSGA-II and TPE samplers, asked for ``population`` designs at a time, by default 50 and 8.
 
-    For NSGA-II this is the population (default 50, Optuna's own). TPE chooses one design at a time without knowing the
-    scores of the others in its batch, so its batches are small.
+    TPE chooses each design without knowing the scores of the others in its batch, so its batches are small.
     """
 
     name: Literal["optuna_nsga2", "optuna_tpe"]
@@ -131,27 +127,19 @@ DEFAULT_ALGORITHM = SurrogateSettings(name="surrogate")
 
 
 def sweep_evaluations(settings: WeightedSettings) -> int:
-    """The most evaluations that all weights together can take; runs that converge early take fewer."""
+    """Return the most evaluations that all weights together can take; runs that converge early take fewer."""
     return len(settings.height_weights) * settings.population * settings.iterations
 
 
 def share_of(settings: WeightedSettings, evaluations: int) -> int:
-    """Iterations of each weight if all have an equal share of a budget, up to the paper's 200."""
+    """Return the iterations of each weight if all have an equal share of a budget, up to the paper's 200."""
     return min(PAPER_ITERATIONS, evaluations // (len(settings.height_weights) * settings.population))
 
 
 def within_budget(settings: AlgorithmSettings, evaluations: int, *, given: bool, source: str) -> AlgorithmSettings:
-    """Settings with which a weighted sweep comes to its last weight within the budget; those of others as they are.
+    """Return settings whose weighted sweep reaches its last weight within the budget; others as they are.
 
-    Args:
-        settings: of any search.
-        evaluations: the budget.
-        given: whether the file gives ``iterations``; if not, every weight gets an equal share of the budget, up to the
-            paper's 200 iterations.
-        source: the file, for messages.
-
-    Raises:
-        StudyError: the budget ends before the last weight.
+    Every weight gets an equal share of the budget unless the file has ``given`` its iterations; too many are refused.
     """
     if not isinstance(settings, WeightedSettings):
         return settings

@@ -1,7 +1,4 @@
-"""What NumPy and pandas give, as Python's own lists, tables and numbers; everything else stays as it is.
-
-Counts that scripts give: of evaluations, threads, samples.
-"""
+"""Values from NumPy and pandas as Python's own lists, tables and numbers; counts that scripts give."""
 
 from collections.abc import Mapping
 from numbers import Integral
@@ -14,23 +11,23 @@ from pareto_monoped.errors import InputError, complaint
 
 
 def is_series(given: Any) -> bool:
-    """Whether something is a series of pandas, which need not be imported for that."""
+    """Return whether something is a series of pandas, without importing pandas."""
     return getattr(given, "ndim", 0) == 1 and hasattr(given, "items") and hasattr(given, "index")
 
 
 def as_list(given: Any) -> Any:
-    """The values of a one-dimensional array, index or series as a list."""
+    """Return the values of a one-dimensional array, index or series as a list, anything else as it is."""
     values = getattr(given, "tolist", None)
     return values() if getattr(given, "ndim", 0) == 1 and callable(values) else given
 
 
 def as_table(given: Any) -> Any:
-    """The values of a series by their labels, as a mapping."""
+    """Return the values of a series by their labels, anything else as it is."""
     return dict(given.items()) if is_series(given) else given
 
 
 def as_plain(given: Any) -> Any:
-    """A value of a study file in the form that TOML has: tables, lists and numbers of Python, and paths as text."""
+    """Return a value of a study file as TOML has it: tables, lists and numbers of Python, and paths as text."""
     if isinstance(given, PathLike):
         return fspath(given)
     if isinstance(given, np.generic | np.ndarray):
@@ -48,11 +45,7 @@ MOST = 100_000_000
 
 
 def count_of(what: str, given: Any) -> int | None:
-    """A whole number from 1 to ``MOST``, or None where none is given.
-
-    Raises:
-        InputError: something else.
-    """
+    """Return a whole number from 1 to ``MOST``, or None where none is given; refuse all else."""
     if given is None:
         return None
     if isinstance(given, bool) or not isinstance(given, Integral) or not 1 <= int(given) <= MOST:

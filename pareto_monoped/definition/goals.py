@@ -39,10 +39,7 @@ _DIRECTED = [name for name in GOAL_NAMES if measure(name).direction is not None]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limit:
-    """One constraint: ``measure`` is at least (``min``) or at most (``max``) ``value``, in its stored unit.
-
-    Only that of an own function may be 0 or less.
-    """
+    """One constraint: ``measure`` is at least (``min``) or at most (``max``) ``value``, in its stored unit."""
 
     measure: str
     side: Side
@@ -59,10 +56,7 @@ class Limit:
         return "above" if self.side == "max" else "below"
 
     def shares(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far values are beyond the limit, as shares of it, shape (n,); they hold it at <= 0.
-
-        Beyond a limit of 0 they are as far as their own values say.
-        """
+        """Return how far values are beyond the limit, as shares of it or, for a limit of 0, as they are; <= 0 holds."""
         sign = 1.0 if self.side == "max" else -1.0
         return sign * (values - self.value) / (abs(self.value) or 1.0)
 
@@ -79,25 +73,22 @@ class Constraints:
         return tuple(dict.fromkeys(limit.measure for limit in self.limits))
 
     def value(self, key: str) -> float | None:
-        """The limit with a key such as "max_mass_kg"; None where there is none."""
+        """Return the limit with a key such as "max_mass_kg"; None where there is none."""
         return next((limit.value for limit in self.limits if limit.key == key), None)
 
     def as_dict(self) -> dict[str, float | None]:
-        """The one stored form: a number per key, None for the limits that are off and always stored."""
+        """Return the stored form: a number per key, None for the limits that are off and always stored."""
         return dict.fromkeys(_ALWAYS_STORED) | {limit.key: limit.value for limit in self.limits}
 
 
 def constraints_of(
     table: Mapping[str, Any], *, strength: bool = False, robust: bool = False, source: str = "constraints"
 ) -> Constraints:
-    """Limits from a table of ``measure = { min = a, max = b }``, or of keys such as ``max_mass_kg``.
+    """Return the limits of a table of ``measure = { min = a, max = b }``, or of keys such as ``max_mass_kg``.
 
-    Args:
-        table: as in a study file or a stored study; a value of None is off.
-        strength: whether every measure of strength is at least ``LEAST_SAFETY``; the table may ask for more.
-        robust: whether an objective is of jumps under uncertainty; at most ``MOST_FAILED`` of them then fail, unless
-            the table asks for another share. So it is where the table limits a measure under uncertainty.
-        source: where it comes from, for messages.
+    A value of None switches a limit off. With ``strength``, every measure of strength is at least ``LEAST_SAFETY``. If
+    an objective or a limit is of jumps under uncertainty, at most ``MOST_FAILED`` of them fail, unless the table says
+    otherwise.
 
     Raises:
         StudyError: an unknown measure or key, a limit given twice, a value out of range, or less than strength asks.
@@ -132,7 +123,7 @@ def constraints_of(
 
 
 def _entries(key: str, value: Any, source: str) -> list[tuple[Side, str, Any]]:
-    """Side, measure and value of each limit that one key of the table sets."""
+    """Return side, measure and value of each limit that one key of the table sets."""
     for side in ("min", "max"):
         name = key.removeprefix(f"{side}_")
         if name != key and is_goal(name):
@@ -147,7 +138,7 @@ def _entries(key: str, value: Any, source: str) -> list[tuple[Side, str, Any]]:
 
 
 def _value(place: tuple[Side, str], value: Any, typed: str) -> float:
-    """The value of a limit; ``typed`` is its key as in the file, for the message."""
+    """Return the value of a limit; ``typed`` is its key as in the file, for the message."""
     low, high = _ALLOWED.get(place, (0.0, math.inf))
     number = not isinstance(value, bool) and isinstance(value, int | float) and _is_finite(value)
     if is_own(place[1]):
@@ -162,7 +153,7 @@ def _value(place: tuple[Side, str], value: Any, typed: str) -> float:
 
 
 def _is_finite(number: int | float) -> bool:
-    """Whether a number is one as floating point has it."""
+    """Return whether a number is one as floating point has it."""
     try:
         return math.isfinite(number)
     except OverflowError:  # a whole number beyond the greatest float
@@ -170,10 +161,7 @@ def _is_finite(number: int | float) -> bool:
 
 
 def _place(limit: Limit) -> tuple[int, int, bool]:
-    """Where a limit stands among the others: those of 0.1.0 first, in their order, so that its studies go on.
-
-    Those of own functions stand last, as they are given.
-    """
+    """Return a limit's place: those of 0.1.0 first in their old order, so that its studies go on; own ones last."""
     if limit.key in _ALWAYS_STORED:
         return _ALWAYS_STORED.index(limit.key), 0, False
     if is_own(limit.measure):
@@ -182,11 +170,7 @@ def _place(limit: Limit) -> tuple[int, int, bool]:
 
 
 def objectives_of(given: Any, *, source: str = "objectives") -> Objectives:
-    """Objectives from a list of measures, from a table of measure and direction, or, for None, the paper's.
-
-    Args:
-        given: as in a study file or a stored study.
-        source: where it comes from, for messages.
+    """Return objectives from a list of measures, from a table of measure and direction, or, for None, the paper's.
 
     Raises:
         StudyError: an unknown measure, one without a direction, one named twice, or not two or three of them.
@@ -216,12 +200,12 @@ def objectives_of(given: Any, *, source: str = "objectives") -> Objectives:
 
 
 def names_of(text: str) -> list[str]:
-    """The measures that an option names, such as "height_m,energy_j"."""
+    """Return the measures that an option names, such as "height_m,energy_j"."""
     return [name.strip() for name in text.split(",")]
 
 
 def stored_objectives(objectives: Objectives) -> dict[str, str] | list[str]:
-    """The stored form of objectives: for the paper's the table that 0.1.0 stored, for others the list of names.
+    """Return the stored form: for the paper's objectives the table that 0.1.0 stored, for others the list of names.
 
     The order of a list is kept, because a search depends on it; a table's order is not part of a study's hash.
     """
@@ -229,11 +213,7 @@ def stored_objectives(objectives: Objectives) -> dict[str, str] | list[str]:
 
 
 def corner_of(table: Mapping[str, Any], objectives: Objectives, *, source: str) -> ReferencePoint:
-    """The reference point from its table, with the values of the table of measures for those left out.
-
-    Raises:
-        StudyError: a measure that is no objective, or a value out of range.
-    """
+    """Return the reference point from its table; what is left out is as in the table of measures."""
     for name, value in flattened(table).items():
         if name not in objectives.names:
             raise StudyError(f"{source}: {unknown_name('measure in reference_point', name, objectives.names)}")
@@ -247,11 +227,7 @@ def corner_of(table: Mapping[str, Any], objectives: Objectives, *, source: str) 
 
 
 def flattened(table: Mapping[str, Any]) -> dict[str, Any]:
-    """A table in which ``height_m.p05 = x`` has the key "height_m.p05": in TOML, a dot makes a table in the table.
-
-    Raises:
-        StudyError: a key that is there in both forms.
-    """
+    """Return a table in which ``height_m.p05 = x``, a table within it, has the key "height_m.p05"; refuse both."""
     flat: dict[str, Any] = {}
     for key, value in table.items():
         inner = {name: value[name] for name in STATISTICS if name in value} if isinstance(value, Mapping) else {}

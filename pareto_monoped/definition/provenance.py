@@ -17,7 +17,7 @@ _NOT_RESULTS = ("audit", "description", "evaluations", "stop")
 
 
 def versions(study: Study) -> dict[str, str]:
-    """Versions of the packages that decide the trials of ``study``; of search libraries, only the one in use."""
+    """Return versions of the packages that decide the trials of ``study``; of search libraries, only the one in use."""
     names = ["mujoco", "numba", "numpy"]
     match study.algorithm:
         case EvolutionSettings() | SurrogateSettings():  # whose operators are pymoo's
@@ -30,18 +30,12 @@ def versions(study: Study) -> dict[str, str]:
 
 
 def environment() -> dict[str, str]:
-    """Python, system and machine; stored for the record, not part of the hash."""
+    """Return Python, system and machine, which are stored for the record and not part of the hash."""
     return {"python": platform.python_version(), "system": platform.system(), "machine": platform.machine()}
 
 
 def decisive(study: Study, contents: Mapping[str, Any], package_versions: Mapping[str, str]) -> dict[str, Any]:
-    """Everything that changes results, as JSON values.
-
-    Args:
-        study: its settings.
-        contents: values of ``motor`` and ``calibration``.
-        package_versions: of the packages in use.
-    """
+    """Return all that changes results, as JSON values; ``contents`` are those of ``motor`` and ``calibration``."""
     settings = {key: value for key, value in study.as_dict().items() if key not in _NOT_RESULTS}
     # Not the names of motor and calibration decide, but their contents, which stand beside the settings.
     settings = {key: value for key, value in settings.items() if key not in (*MOTOR_KEYS, "calibration")}
@@ -62,13 +56,13 @@ def decisive(study: Study, contents: Mapping[str, Any], package_versions: Mappin
 
 
 def digest(values: Mapping[str, Any]) -> str:
-    """SHA-256 of JSON values, independent of the order of keys."""
+    """Return the SHA-256 of JSON values, independent of the order of keys."""
     text = json.dumps(values, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
 
 
 def differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """The differences between two sets of JSON values, each as ``key: old -> new``."""
+    """Return the differences between two sets of JSON values, each as ``key: old -> new``."""
     old, new = _flat(before), _flat(now)
     keys = [*old, *(key for key in new if key not in old)]
     absent = "(none)"

@@ -95,11 +95,7 @@ class Study:
 
     @classmethod
     def from_toml(cls, path: str | PathLike[str], **changes: Any) -> "Study":
-        """The study in a TOML file, with other values for some of its keys.
-
-        Args:
-            path: the file.
-            changes: as for ``define``.
+        """Read the study in a TOML file, with other values for some of its keys, as for ``define``.
 
         Raises:
             StudyError: no readable TOML, an unknown key, a wrong type, or impossible bounds.
@@ -118,11 +114,10 @@ class Study:
 
     @classmethod
     def define(cls, **values: Any) -> "Study":
-        """A study from the keys of a study file, such as ``motor="U8"`` or ``constraints={"mass_kg": {"max": 4.0}}``.
+        """Return a study from the keys of a study file, such as ``motor="U8"``.
 
-        Args:
-            values: the keys. ``name`` and ``evaluations`` are required; the others have the defaults of a study file.
-                Tables are mappings, an algorithm may be a name, and files of motors and calibrations may be paths.
+        ``name`` and ``evaluations`` are required; the others have the defaults of a study file. Tables are mappings, an
+        algorithm may be a name, and files of motors and calibrations may be paths.
 
         Raises:
             StudyError: an unknown key, a wrong type, or impossible bounds.
@@ -194,27 +189,17 @@ class Study:
         return [self.variables[name] for name in NAMES]
 
     def as_dict(self) -> dict[str, Any]:
-        """The study as plain values in the form of its file; ``study_from_dict`` reads it back.
+        """Return the study as plain values in the form of its file; ``study_from_dict`` reads it back.
 
-        Left out are keys of motors that say nothing, optional variables at their defaults, limits that are off and came
-        later, the rules ``paper``, strength that is not asked for, a list of gearboxes that is not searched, and
-        uncertainty where nothing is said of it. The paper's objectives stand as 0.1.0 stored them. So studies stored
-        before there were others keep their hash.
+        Settings that came after version 0.1.0 are left out at their defaults, so that older studies keep their hash.
         """
         plain = asdict(self)
         del plain["shared_iterations"]
-        if self.rules == "paper":
-            del plain["rules"]
-        if not self.strength:
-            del plain["strength"]
-        if not self.gear_list:
-            del plain["gear_list"]
-        if self.uncertainty is None:
-            del plain["uncertainty"]
-        else:
+        if self.uncertainty is not None:
             plain["uncertainty"] = self.uncertainty.as_dict()
-        for key in MOTOR_KEYS:
-            if plain[key] is None:
+        defaults = {"rules": "paper", "strength": False, "gear_list": False, "uncertainty": None}
+        for key, default in (defaults | dict.fromkeys(MOTOR_KEYS)).items():
+            if plain[key] == default:
                 del plain[key]
         plain["variables"] = {
             name: asdict(v) if isinstance(v, Bounds) else v
@@ -235,39 +220,20 @@ def load_study(
     objectives: Sequence[str] | None = None,
     strength: bool | None = None,
 ) -> Study:
-    """The study in a TOML file.
+    """Read the study in a TOML file, with other values for some of its keys; raise ``StudyError`` as ``from_toml``.
 
-    Args:
-        path: the file.
-        evaluations: budget to use instead of the one in the file.
-        seed: seed to use instead of the one in the file.
-        objectives: measures to use instead of those in the file; what its reference point says of others is left out.
-        strength: whether designs must hold, instead of what the file says.
-
-    Raises:
-        StudyError: an unknown key, a wrong type, impossible bounds, a budget that ends before the last weight of a
-            weighted search, or no readable TOML.
+    With other ``objectives``, what the file's reference point says of dropped ones is left out.
     """
     values = file_values(path)
-    if evaluations is not None:
-        values["evaluations"] = evaluations
-    if seed is not None:
-        values["seed"] = seed
-    if strength is not None:
-        values["strength"] = strength
+    given = {"evaluations": evaluations, "seed": seed, "strength": strength}
+    values |= {key: value for key, value in given.items() if value is not None}
     if objectives is not None:
         values = with_objectives(values, objectives)
     return filled(values, source=f"study file {str(path)!r}")
 
 
 def filled(values: dict[str, Any], *, source: str) -> Study:
-    """The study of a file's keys, with the defaults of a file where they say nothing.
-
-    Raises:
-        StudyError: an unknown key, a wrong type, or impossible bounds.
-        MotorError: an unknown name of a motor; its file is read only when the study runs.
-        CalibrationError: an unknown name of a calibration, likewise.
-    """
+    """Return the study of a file's keys, with the defaults of a file for those left out; see ``Study.define``."""
     calibration = str(values.get("calibration"))
     defaults = {"rules": rules_for(calibration), "strength": strength_for(calibration), "gear_list": True}
     values = defaults | values
@@ -280,13 +246,13 @@ def filled(values: dict[str, Any], *, source: str) -> Study:
 
 
 def budgeted(study: Study, *, given: bool, source: str) -> Study:
-    """A study whose search comes to its end within the budget, see ``within_budget``."""
+    """Return a study whose search ends within the budget, see ``within_budget``."""
     settings = within_budget(study.algorithm, study.evaluations, given=given, source=source)
     return replace(study, algorithm=settings, shared_iterations=not given and isinstance(settings, WeightedSettings))
 
 
 def _require_names(study: Study, source: str) -> None:
-    """Refuse names of motors and of a calibration that no run could find; a stored study has what they meant."""
+    """Refuse names of motors and of a calibration that no run could find."""
     from pareto_monoped.actuator.motors import require_motor_name
     from pareto_monoped.jump.calibration import require_calibration_name
 
@@ -298,15 +264,7 @@ def _require_names(study: Study, source: str) -> None:
 
 
 def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
-    """A study from plain values.
-
-    Args:
-        values: the keys of a study file.
-        source: where they come from, for messages.
-
-    Raises:
-        StudyError: an unknown key, a wrong type, or impossible bounds.
-    """
+    """Return a study from plain values, the keys of a study file; raise ``StudyError`` for impossible ones."""
     file = checked(StudyFile, values, source=source, error=StudyError)
     rules = rules_for(file.calibration, file.rules, key=f"{source}: rules", error=StudyError)
     objectives = objectives_of(file.objectives, source=source)

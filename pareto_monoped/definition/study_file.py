@@ -1,7 +1,4 @@
-"""The keys of a study file: their types and defaults, the files that they name, and the table of the algorithm.
-
-The study files that come with the package, to start from.
-"""
+"""The keys of a study file, their types and defaults; the files that it names; the study files of the package."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -33,10 +30,7 @@ START = "case_c"
 
 
 def shipped_studies() -> dict[str, Traversable]:
-    """Name -> file of each study that comes with the package, in alphabetical order.
-
-    An installed package has them among its data, a checkout in ``studies`` beside it.
-    """
+    """Return the file of each study that comes with the package, by name, in alphabetical order."""
     folder = resources.files("pareto_monoped") / "data" / "studies"
     if not folder.is_dir():
         folder = Path(__file__).parents[2] / "studies"
@@ -49,11 +43,7 @@ def _files(folder: Traversable) -> list[Traversable]:
 
 
 def shipped_study(name: str) -> str:
-    """The text of a shipped study.
-
-    Raises:
-        StudyError: there is none of this name.
-    """
+    """Return the text of a shipped study; refuse an unknown name."""
     known = shipped_studies()
     if name not in known:
         raise StudyError(unknown_name("study", name, known))
@@ -98,11 +88,7 @@ class StudyFile(Strict):
 
 
 def file_values(path: Path) -> dict[str, Any]:
-    """The keys of a study file. Paths in it are relative to it, so that a folder with both can be moved.
-
-    Raises:
-        StudyError: no readable TOML.
-    """
+    """Read the keys of a study file, whose relative paths count from its folder; refuse what is no TOML."""
     if not path.exists() and (name := path.name.removesuffix(".toml")) in shipped_studies():
         raise StudyError(
             f"study file {str(path)!r}: no such file; 'pareto-monoped init {name}' copies the one that comes with the "
@@ -112,11 +98,7 @@ def file_values(path: Path) -> dict[str, Any]:
 
 
 def plain_values(values: Mapping[str, Any], source: str) -> dict[str, Any]:
-    """The keys of a study file from a script, which may have paths, arrays and numbers of NumPy.
-
-    Raises:
-        StudyError: a motor or a calibration itself; a study has their names.
-    """
+    """Return the keys of a study file from a script: paths, arrays and numbers of NumPy, but no motor itself."""
     from pareto_monoped.actuator.motor import Motor
     from pareto_monoped.jump.calibration import Calibration
 
@@ -134,7 +116,7 @@ def plain_values(values: Mapping[str, Any], source: str) -> dict[str, Any]:
 
 
 def with_paths(values: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Keys of a study file with the files of motors and calibrations, named relative to ``folder``, as full paths."""
+    """Return the keys of a study file with the files of motors and calibrations in ``folder`` as full paths."""
 
     def resolved(name: Any) -> Any:
         file = isinstance(name, str) and name.endswith(".toml")
@@ -149,7 +131,7 @@ def with_paths(values: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def with_objectives(values: Mapping[str, Any], objectives: Sequence[str]) -> dict[str, Any]:
-    """The keys of a study file with other objectives; what its reference point says of others is left out."""
+    """Return the keys of a study file with other objectives, without what its reference point says of dropped ones."""
     changed = dict(values) | {"objectives": list(objectives)}
     if isinstance(corner := values.get("reference_point"), dict):
         changed["reference_point"] = {name: value for name, value in flattened(corner).items() if name in objectives}
@@ -157,11 +139,7 @@ def with_objectives(values: Mapping[str, Any], objectives: Sequence[str]) -> dic
 
 
 def algorithm_of(file: StudyFile, corner: ReferencePoint, source: str) -> AlgorithmSettings:
-    """The settings in the table ``algorithm``.
-
-    Raises:
-        StudyError: an unknown algorithm or setting, or a study that this algorithm cannot search.
-    """
+    """Return the settings in the table ``algorithm``; refuse unknown ones, and a study that they cannot search."""
     table = file.algorithm
     if not table:
         return DEFAULT_ALGORITHM

@@ -1,7 +1,4 @@
-"""The variables of a study: each is free within bounds or fixed to a number.
-
-The motors that a study file names: one or a list for both joints, or one or a list for hip and knee each.
-"""
+"""The variables of a study, free within bounds or fixed, and its motors: of both joints, or of hip and knee each."""
 
 import json
 from collections.abc import Mapping
@@ -26,12 +23,7 @@ class Bounds:
 
 
 def variables_of(given: Mapping[str, Any], case: str | None, source: str) -> dict[str, Bounds | float]:
-    """What each variable may be: as given, else as in the paper's case, else free within the paper's bounds.
-
-    Args:
-        given: the table ``variables`` of a study file.
-        case: the paper's case whose fixed variables the study has, if any.
-        source: the file, for messages.
+    """Return what each variable may be: as given, else as in the paper's case, else free within the paper's bounds.
 
     Raises:
         StudyError: an unknown name, impossible bounds, nothing free, or links shorter than the start height.
@@ -90,17 +82,13 @@ def _range_example(name: str) -> str:
 
 
 def _limits(name: str) -> tuple[float, float]:
-    """Least and greatest value of a variable."""
+    """Return the least and the greatest value of a variable."""
     unit = next(variable.unit for variable in VARIABLES if variable.name == name)
     return _REST_LENGTHS_M if name == "rest_length_m" else _LIMITS.get(unit, (0.0, 1e6))
 
 
 def number_of(key: str, name: str, given: Any) -> float:
-    """A value of the variable ``name``, which messages call ``key``.
-
-    Raises:
-        StudyError: no number, or one out of range.
-    """
+    """Return a value of the variable ``name``, which messages call ``key``; refuse one out of range."""
     low, high = _limits(name)
     allowed = f"a number from {low:g} to {high:g}"
     if isinstance(given, bool) or not isinstance(given, int | float) or not low <= given <= high:
@@ -118,12 +106,12 @@ _LONGEST_NAME = 1000
 
 
 def names_of(named: Named) -> tuple[str, ...]:
-    """The names that a key gives."""
+    """Return the names that a key gives."""
     return (named,) if isinstance(named, str) else named or ()
 
 
 def all_names(motor: Named, hip: Named, knee: Named) -> tuple[str, ...]:
-    """Every motor once, those of the hip first; capitals do not tell names apart."""
+    """Return every motor once, those of the hip first; capitals do not tell names apart."""
     found: dict[str, str] = {}
     for name in (*names_of(motor), *names_of(hip), *names_of(knee)):
         found.setdefault(name.lower(), name)
@@ -131,9 +119,9 @@ def all_names(motor: Named, hip: Named, knee: Named) -> tuple[str, ...]:
 
 
 def kits_of(motor: Named, hip: Named, knee: Named) -> tuple[tuple[str, str], ...]:
-    """The motors of hip and knee that a design may have, named as in ``all_names``.
+    """Return the motors of hip and knee that a design may have, named as in ``all_names``.
 
-    Each motor twice where both joints have the same, else each of the hip's with each of the knee's.
+    Both joints share each of ``motor``, else each of the hip's is paired with each of the knee's.
     """
     if motor is not None:
         return tuple((name, name) for name in names_of(motor))
@@ -142,24 +130,14 @@ def kits_of(motor: Named, hip: Named, knee: Named) -> tuple[tuple[str, str], ...
 
 
 def text_of(motor: Named, hip: Named, knee: Named) -> str:
-    """All motors in one line, with commas between them: of both joints, or of hip and knee."""
+    """Return all motors in one line, with commas between them: of both joints, or of hip and knee."""
     if motor is not None:
         return ", ".join(names_of(motor))
     return f"hip {', '.join(names_of(hip))}; knee {', '.join(names_of(knee))}"
 
 
 def named_motors(motor: Any, hip: Any, knee: Any, source: str) -> dict[str, Named]:
-    """The motors as a study keeps them, by ``MOTOR_KEYS``; one motor that both joints have stands for both.
-
-    Args:
-        motor: what the file says of both joints, None where it says nothing.
-        hip: of the hip, likewise.
-        knee: of the knee.
-        source: the file, for messages.
-
-    Raises:
-        StudyError: what is no name and no list of different names; or keys that exclude or need each other.
-    """
+    """Return the motors as a study keeps them, by ``MOTOR_KEYS``; one motor of both joints stands for both."""
     joints = {"hip_motor": hip, "knee_motor": knee}
     given = [key for key, value in joints.items() if value is not None]
     if not given:

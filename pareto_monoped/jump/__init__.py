@@ -5,6 +5,22 @@ variations; model; population; evaluate, frames; peers, shared, single; balance;
 """
 
 __all__ = [
-    "audit", "balance", "calibration", "calibration_defaults", "controller_record", "end_stops", "evaluate", "frames",
-    "model", "peers", "population", "screen", "shared", "single", "table1", "variations",
-]  # fmt: skip
+    "audit",
+    "balance",
+    "calibration",
+    "calibration_defaults",
+    "controller_record",
+    "end_stops",
+    "evaluate",
+    "frames",
+    "model",
+    "peers",
+    "population",
+    "screen",
+    "shared",
+    "single",
+    "table1",
+    "variations",
+]
+
+# fmt: skip

@@ -13,16 +13,9 @@ of a link, is less than anybody would call another robot."""
 
 
 def prices(values: Floats, of: Floats, objectives: Objectives) -> Floats:
-    """What designs cost compared with a given one: the greatest loss in any objective, as a share of its value there.
+    """Return what designs, (n, m), cost against one, (m,): the greatest loss as a share of its value, (n,).
 
-    Args:
-        values: of the objectives, shape (n, m), in stored units.
-        of: those of the given design, shape (m,).
-        objectives: which m measures these are.
-
-    Returns:
-        Shape (n,); at most 0 for a design that is worse in no objective. Where the given value is 0, any loss is
-        infinite.
+    A design that is worse in no objective costs at most 0. Where the given value is 0, any loss is infinite.
     """
     lost = objectives.minimised(values) - objectives.minimised(of)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -31,15 +24,9 @@ def prices(values: Floats, of: Floats, objectives: Objectives) -> Floats:
 
 
 def distances(points: Floats, to: Floats, categories: NDArray[np.bool_]) -> Floats:
-    """Distances of designs from one design, as shares of the variables' ranges.
+    """Return distances of designs, shape (n, d), from one design, shape (d,), as shares of the variables' ranges, (n,).
 
-    Args:
-        points: shape (n, d): numbers scaled so that the range is 1, and categories as any numbers.
-        to: shape (d,).
-        categories: which variables have values without an order, shape (d,); two different ones are 1 apart.
-
-    Returns:
-        The root of the sum of squares over the variables, shape (n,).
+    Numbers are scaled so that their range is 1; different values of ``categories``, without an order, are 1 apart.
     """
     apart = np.abs(points - to)
     apart[:, categories] = apart[:, categories] != 0.0
@@ -47,16 +34,11 @@ def distances(points: Floats, to: Floats, categories: NDArray[np.bool_]) -> Floa
 
 
 def most_different(points: Floats, given: int, count: int, categories: NDArray[np.bool_]) -> list[int]:
-    """Up to ``count`` designs that differ most from a given one and from each other.
+    """Return up to ``count`` rows of designs that differ most from a given one and from each other.
 
-    Greedy: each next design is the one whose nearest design among those taken is farthest (Gonzalez 1985, who shows
-    that the least distance is at least half of the best possible). It ends where that is below ``LEAST_DISTANCE``.
-
-    Args:
-        points: see ``distances``; of equally far ones, the first is taken.
-        given: row of the given design, which is not among the result.
-        count: how many at most.
-        categories: see ``distances``.
+    Greedy: each next design is the one whose nearest design among those taken is farthest, of equals the first
+    (Gonzalez 1985, who shows that the least distance is at least half of the best possible). It ends where that is
+    below ``LEAST_DISTANCE``.
     """
     taken: list[int] = []
     nearest = distances(points, points[given], categories)

@@ -1,9 +1,4 @@
-"""The front: the designs that no other design betters in one objective without being worse in another.
-
-The front of ever more designs, without looking at those again that are on it.
-
-What the designs of a front that reach a height cost in another objective.
-"""
+"""The front: the designs that no other betters in one objective without being worse in another; a front that grows."""
 
 from dataclasses import dataclass
 
@@ -18,18 +13,11 @@ from pareto_monoped.pareto.objectives import Objectives
 def front_mask(
     values: NDArray[np.float64], objectives: Objectives, feasible: NDArray[np.bool_] | None = None
 ) -> NDArray[np.bool_]:
-    """Find the non-dominated designs of n.
+    """Find the non-dominated designs of n, in stored units, shape (n, m) -> (n,).
 
-    A design is dominated if another feasible one is at least as good in every objective, and better in at least one.
-    Of several designs that are equal in all objectives only the first is on the front.
-
-    Args:
-        values: of the objectives, in their order and stored units, shape (n, m).
-        objectives: which m measures these are.
-        feasible: which designs may be on the front, shape (n,); all if None. A design with a non-finite value never is.
-
-    Returns:
-        A mask of shape (n,), true for the designs on the front.
+    A design is dominated if another feasible one is at least as good in every objective, and better in at least one. Of
+    several designs that are equal in all objectives only the first is on the front. One with a non-finite value never
+    is.
     """
     points = objectives.minimised(np.asarray(values, dtype=np.float64).reshape(-1, len(objectives.names)))
     eligible = np.isfinite(points).all(axis=1)
@@ -44,7 +32,7 @@ def front_mask(
 
 
 def _of_two(points: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Rows of the non-dominated points, shape (n, 2), both minimised."""
+    """Return rows of the non-dominated points, shape (n, 2), both minimised."""
     # Sort by the first objective and, where it is equal, by the second; lexsort is stable, so ties keep their order.
     # Then a point is on the front exactly if its second objective is less than that of all points before it.
     order = np.lexsort((points[:, 1], points[:, 0]))
@@ -55,7 +43,7 @@ def _of_two(points: NDArray[np.float64]) -> NDArray[np.intp]:
 
 
 def _of_more(points: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Rows of the non-dominated points, shape (n, m), all minimised; of equal points the first."""
+    """Return rows of the non-dominated points, shape (n, m), all minimised; of equal points the first."""
     import moocore
 
     return np.flatnonzero(moocore.is_nondominated(points, keep_weakly=False))
@@ -70,9 +58,6 @@ class GrowingFront:
 
     With two objectives the front stays sorted by the first, in which the second falls. A new design is then compared
     with its neighbours alone: a front of 20,000 designs takes in 80 more in a tenth of the time that sorting all takes.
-
-    Attributes:
-        objectives: of the designs.
     """
 
     def __init__(self, objectives: Objectives) -> None:
@@ -95,13 +80,7 @@ class GrowingFront:
         return self.objectives.minimised(self._points.T)  # which is its own inverse
 
     def add(self, numbers: Numbers, values: Floats) -> None:
-        """Add feasible designs.
-
-        Args:
-            numbers: greater than all before, ascending, shape (n,): of equal designs the first is on the front.
-            values: of the objectives in stored units, shape (n, m); a design with a value that is not finite is never
-                on the front.
-        """
+        """Add feasible designs in stored units, shape (n, m), whose numbers ascend from above all before, (n,)."""
         if len(self._points) == 2:
             best = front_mask(values, self.objectives)
             self._merge(numbers[best], self.objectives.minimised(values[best]).T)
@@ -144,7 +123,7 @@ class AtHeight:
     value: float | None
 
     def text(self) -> str:
-        """In words, such as "27.01 J at 0.8 m"."""
+        """Return words such as "27.01 J at 0.8 m"."""
         if self.value is None:
             return f"{self.height_m:g} m not reached"
         return f"{self.measure.text(self.value)} at {self.height_m:g} m"
@@ -153,13 +132,7 @@ class AtHeight:
 def best_at_height(
     values: NDArray[np.float64], objectives: Objectives, height_m: float = HEADLINE_HEIGHT_M
 ) -> AtHeight | None:
-    """The best of the first other objective, at a height or above.
-
-    Args:
-        values: of n designs, shape (n, m), in the objectives' order and stored units.
-        objectives: what they are; without the height among them there is no answer, None.
-        height_m: least height.
-    """
+    """Return the best of the first other objective among n designs, (n, m), at a height or above; None without one."""
     if HEIGHT not in objectives.names:
         return None
     other = objectives.other_than(HEIGHT)

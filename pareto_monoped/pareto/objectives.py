@@ -1,8 +1,4 @@
-"""What a search is for, and how good a front is.
-
-``Objectives`` are two or three measures of a jump, each with its direction. The hypervolume of a front is computed by
-moocore for two or three objectives.
-"""
+"""What a search is for, two or three measures of a jump with directions, and how good a front is: its hypervolume."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -43,11 +39,11 @@ class Objectives:
         return " ".join(entry.unit for entry in self.measures if entry.unit != "1") or "1"
 
     def minimised(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """``values``, shape (n, m) in stored units, with the sign that makes less better."""
+        """Return ``values``, shape (n, m) in stored units, with the sign that makes less better."""
         return np.ascontiguousarray(values * self.signs)
 
     def text(self, values: Sequence[float]) -> str:
-        """The values of one design in words, such as "0.800 m on 15.36 J" or "mass 3.812 kg, height 0.800 m"."""
+        """Return the values of one design in words, such as "0.800 m on 15.36 J" or "mass 3.812 kg, height 0.800 m"."""
         if self == HEIGHT_AND_ENERGY:
             return f"{values[0]:.3f} m on {values[1]:.2f} J"
         apart = "; " if any("," in entry.words for entry in self.measures) else ", "
@@ -56,7 +52,7 @@ class Objectives:
         )
 
     def other_than(self, name: str) -> Measure:
-        """The first of the objectives that is not called ``name``."""
+        """Return the first of the objectives that is not called ``name``."""
         return next(entry for entry in self.measures if entry.name != name)
 
 
@@ -93,12 +89,7 @@ def reference_point(objectives: Objectives, given: Mapping[str, float] | None = 
 
 
 def hypervolume(points: Points, reference: ReferencePoint) -> float:
-    """Compute the area or volume that ``points`` dominate, bounded by ``reference``; larger is better.
-
-    Points have stored units and their natural sign; the result has the product of the units.
-
-    Source: Zitzler and Thiele 1998; for three objectives the exact algorithm of moocore.
-    """
+    """Compute the area or volume that ``points`` in stored units dominate (Zitzler and Thiele 1998)."""
     less_is_better = reference.objectives.minimised(points)
     corner = reference.objectives.minimised(np.array(reference.values))
     inside = less_is_better[(less_is_better < corner).all(axis=1)]

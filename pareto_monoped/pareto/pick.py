@@ -1,9 +1,7 @@
 """Pick one design from the front and say why.
 
-Every way to choose is a score of the designs on the whole front. Conditions only say which designs may be chosen, so a
-condition that the chosen design meets never changes the choice.
-
-Choices by what a person wants: weights of the objectives, or a point that the design should come near to.
+Every way to choose, such as weights or a wish, is a score of the designs on the whole front. Conditions only say which
+designs may be chosen, so a condition that the chosen design meets never changes the choice.
 """
 
 from collections.abc import Mapping, Sequence
@@ -41,11 +39,7 @@ if TYPE_CHECKING:
 
 
 def weighted(values: Floats, weights: tuple[float, ...], objectives: Objectives) -> Scored:
-    """The weighted sum of the objectives, each scaled to the extent of the front.
-
-    Raises:
-        SelectionError: not one weight of at least 0 per objective.
-    """
+    """Compute scores by the weighted sum of the objectives, each scaled to the extent of the front."""
     value = -(scaled(values) * objectives.signs) @ _checked("weights", weights, objectives)
     terms = "".join(
         f"{' + ' if entry.direction == 'maximise' else ' - '}{weight:g} x {entry.words}"
@@ -58,13 +52,7 @@ def weighted(values: Floats, weights: tuple[float, ...], objectives: Objectives)
 
 
 def compromise(values: Floats, weights: tuple[float, ...], objectives: Objectives) -> Scored:
-    """Zeleny 1973 (Compromise programming): the distance from the best of every objective.
-
-    Each difference is scaled to the extent of the front and weighted, the distance is Euclidean.
-
-    Raises:
-        SelectionError: not one weight of at least 0 per objective.
-    """
+    """Compute scores by the weighted Euclidean distance from the best of every objective, scaled (Zeleny 1973)."""
     distance = np.linalg.norm(losses(values, objectives) * _checked("compromise", weights, objectives), axis=1)
     best = objectives.signs * objectives.minimised(values).min(axis=0)
     ideal = objectives.text(best.tolist())
@@ -78,13 +66,10 @@ def compromise(values: Floats, weights: tuple[float, ...], objectives: Objective
 
 
 def nearest(rows: "DataFrame", wish: Mapping[str, float]) -> Scored:
-    """Wierzbicki 1980 (The use of reference objectives): the greatest shortfall from the wish in any measure.
+    """Compute scores by the greatest shortfall from the wish (Wierzbicki 1980, The use of reference objectives).
 
     Shortfalls are scaled to the extent of the front. A wish that several designs surpass goes to the one that surpasses
     it most. Of designs with the same greatest shortfall, the one with the least sum of them comes first.
-
-    Raises:
-        SelectionError: no design on the front has a value of a measure.
     """
     columns = []
     for name, wanted in wish.items():
@@ -109,7 +94,7 @@ def nearest(rows: "DataFrame", wish: Mapping[str, float]) -> Scored:
 
 
 def _checked(option: str, weights: tuple[float, ...], objectives: Objectives) -> Floats:
-    """The weights as an array, shape (m,)."""
+    """Return the weights as an array, shape (m,); there must be one of at least 0 per objective."""
     values = np.array(weights, dtype=np.float64)
     count = {2: "two", 3: "three"}[len(objectives.names)]
     if len(values) != len(objectives.names) or not (
@@ -132,13 +117,7 @@ class Pick:
 
 
 def pick(front: "DataFrame", selector: Selector, objectives: Objectives = HEIGHT_AND_ENERGY) -> Pick:
-    """Pick the design of ``front`` that ``selector`` asks for.
-
-    Args:
-        front: one row per design, in any order, with the column ``trial``, one per objective, and those that conditions
-            and wishes name.
-        selector: which design.
-        objectives: under which the designs do not dominate each other.
+    """Pick the design of ``front``, one row per design in any order, that ``selector`` asks for.
 
     Raises:
         SelectionError: the front is empty, none of its designs fits, or the selector does not suit the objectives.
@@ -163,7 +142,7 @@ def pick(front: "DataFrame", selector: Selector, objectives: Objectives = HEIGHT
 
 
 def _asked(selector: Selector, objectives: Objectives) -> tuple[tuple[Condition, ...], Chooser | None]:
-    """Any selector as conditions, and as what chooses among the designs that meet them."""
+    """Return any selector as conditions, and what chooses among the designs that meet them."""
     match selector:
         case Among():
             return tuple(_condition(one, objectives) for one in selector.conditions), selector.chooser
@@ -179,12 +158,9 @@ def _asked(selector: Selector, objectives: Objectives) -> tuple[tuple[Condition,
 
 
 def _condition(given: Condition | MaxEnergy, objectives: Objectives) -> Condition:
-    """A condition as it is; ``MaxEnergy`` is one on the energy that is an objective.
+    """Return a condition as it is; ``MaxEnergy`` as one on the energy that is an objective.
 
     What is asked of "the height" or "the energy" is asked of the statistic of it that is an objective.
-
-    Raises:
-        SelectionError: no objective is an energy.
     """
     if isinstance(given, Condition):
         own = _objective(given.name, objectives) if given.asked == "min-height" else None
@@ -198,20 +174,20 @@ def _condition(given: Condition | MaxEnergy, objectives: Objectives) -> Conditio
 
 
 def _objective(name: str, objectives: Objectives) -> str | None:
-    """The objective that is about a measure: the measure itself, or else one of its statistics."""
+    """Return the objective that is about a measure: the measure itself, or else one of its statistics."""
     found = [one for one in objectives.names if nominal(one) == name]
     return name if name in found else next(iter(found), None)
 
 
 def at_or_better(name: str, value: float) -> Condition:
-    """The condition of ``Within``: a measure at a value or better."""
+    """Return the condition of ``Within``: a measure at a value or better."""
     return Condition(name=name, side="min" if measure(name).direction == "maximise" else "max", value=value, asked=name)
 
 
 def _best(
     rows: "DataFrame", fits: NDArray[np.bool_], conditions: Sequence[Condition], objectives: Objectives
 ) -> tuple[int, str]:
-    """The best of the designs that fit, in the first objective without a condition; ties by the other objectives."""
+    """Return the best of the designs that fit in the first objective without a condition; ties by the others."""
     limited = {condition.name for condition in conditions}
     free = [entry for entry in objectives.measures if entry.name not in limited]
     other = free[0] if free else objectives.other_than(conditions[0].name)
@@ -229,7 +205,7 @@ def _superlative(entry: Measure) -> str:
 
 
 def _chosen(rows: "DataFrame", fits: NDArray[np.bool_], chooser: Chooser, objectives: Objectives) -> tuple[int, str]:
-    """The design of the greatest score among those that fit, and why."""
+    """Return the design of the greatest score among those that fit, and why."""
     values = rows[list(objectives.names)].to_numpy(dtype=np.float64)
     match chooser:
         case Knee():

@@ -1,7 +1,4 @@
-"""What can be asked of a front: which one of its designs, and under which conditions.
-
-Conditions on the designs of a front: which designs meet them, and how they are worded.
-"""
+"""What can be asked of a front: one of its designs, and conditions, which designs meet and messages word."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -47,10 +44,7 @@ class MaxEnergy:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Within:
-    """The design whose measure is at ``value`` or better, and that is best in the first other objective.
-
-    ``value`` is in the measure's stored unit.
-    """
+    """The design whose measure is at ``value`` or better, and that is best in the first other objective."""
 
     measure: str
     value: float
@@ -75,10 +69,7 @@ class Weights:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Compromise:
-    """The design with the least weighted distance from the best of every objective.
-
-    Unlike ``Weights`` it also finds designs where the front is bent the other way.
-    """
+    """The design with the least weighted distance from the best of every objective, also on bent parts of a front."""
 
     values: tuple[float, ...]
 
@@ -124,12 +115,12 @@ CONDITION_NAMES: tuple[str, ...] = (*GOAL_NAMES, *_VARIABLES)
 
 
 def column(rows: "DataFrame", name: str) -> Floats:
-    """The values of a measure or variable, shape (n,); NaN for a measure under uncertainty that a study has not."""
+    """Return a measure or variable, shape (n,); NaN for a measure under uncertainty that a study has not."""
     return rows[name].to_numpy(dtype=np.float64) if name in rows else np.full(len(rows), np.nan)
 
 
 def fitting(rows: "DataFrame", conditions: Sequence[Condition]) -> NDArray[np.bool_]:
-    """Which designs meet all conditions, shape (n,); a design without a value of a measure does not."""
+    """Return which designs meet all conditions, shape (n,); a design without a value of a measure does not."""
     fits = np.ones(len(rows), dtype=bool)
     for condition in conditions:
         fits &= meets(column(rows, condition.name), condition)
@@ -137,16 +128,12 @@ def fitting(rows: "DataFrame", conditions: Sequence[Condition]) -> NDArray[np.bo
 
 
 def meets(values: Floats, condition: Condition) -> NDArray[np.bool_]:
-    """Which values of the measure or variable meet a condition, shape (n,)."""
+    """Return which values of the measure or variable meet a condition, shape (n,)."""
     return np.asarray(values >= condition.value if condition.side == "min" else values <= condition.value)
 
 
 def required_fits(rows: "DataFrame", conditions: Sequence[Condition], objectives: Objectives) -> NDArray[np.bool_]:
-    """As ``fitting``.
-
-    Raises:
-        SelectionError: no design meets all of them; the message names the nearest that can be had.
-    """
+    """Return ``fitting``; if no design meets all conditions, refuse them and name the nearest that can be had."""
     for condition in conditions:
         values = column(rows, condition.name)
         if not meets(values, condition).any():
@@ -158,12 +145,12 @@ def required_fits(rows: "DataFrame", conditions: Sequence[Condition], objectives
 
 
 def phrase(conditions: Sequence[Condition]) -> str:
-    """The conditions in words that follow "designs that", such as "reach 0.9 m and have at most 4 kg of mass"."""
+    """Return the conditions in words after "designs that", such as "reach 0.9 m and have at most 4 kg of mass"."""
     return " and ".join(_phrase(condition) for condition in conditions)
 
 
 def asked(condition: Condition) -> str:
-    """A condition as the user wrote it, such as "min-height = 0.9 m"."""
+    """Return a condition as the user wrote it, such as "min-height = 0.9 m"."""
     name = condition.asked or f"{condition.side} {condition.name}"
     return f"{name} = {_valued(condition)}"
 
@@ -177,7 +164,7 @@ def _phrase(condition: Condition) -> str:
 
 
 def _unmet(values: Floats, condition: Condition) -> str:
-    """What to say of a condition that no design meets."""
+    """Return what to say of a condition that no design meets."""
     if np.isnan(values).all():
         return f"{asked(condition)}: no design on the front has a value of it; limit another measure"
     at_least = condition.side == "min"
@@ -190,7 +177,7 @@ def _unmet(values: Floats, condition: Condition) -> str:
 
 
 def _unmet_together(rows: "DataFrame", conditions: Sequence[Condition], objectives: Objectives) -> str:
-    """What to say of conditions that each some design meets, but none all: the design that comes nearest."""
+    """Return the message on conditions that no design meets together: the design that comes nearest."""
     row = nearest_row(rows, conditions)
     found = rows.iloc[row]
     missed = ", ".join(
@@ -206,29 +193,29 @@ def _unmet_together(rows: "DataFrame", conditions: Sequence[Condition], objectiv
 
 
 def nearest_row(rows: "DataFrame", conditions: Sequence[Condition]) -> int:
-    """Position of the design that misses the conditions by least.
+    """Return the position of the design that misses the conditions by least.
 
-    What it misses a condition by counts as a share of the front's extent in that quantity. The design with the least
-    greatest share comes first, of equal ones that with the least sum.
+    A miss counts as a share of the front's extent in that quantity. The design with the least greatest share comes
+    first, of equal ones that with the least sum.
     """
     missed = np.stack([_shortfall(rows[one.name].to_numpy(dtype=np.float64), one) for one in conditions])
     return int(np.lexsort((missed.sum(axis=0), missed.max(axis=0)))[0])
 
 
 def _shortfall(values: Floats, condition: Condition) -> Floats:
-    """By how much each value misses a condition, as a share of the values' extent; infinite without a value."""
+    """Return by how much each value misses a condition, as a share of the values' extent; infinite without a value."""
     extent = float(np.nanmax(values) - np.nanmin(values))
     beyond = condition.value - values if condition.side == "min" else values - condition.value
     return np.nan_to_num(np.maximum(beyond, 0.0), nan=np.inf) / (extent or 1.0)
 
 
 def _words(name: str) -> str:
-    """What a measure or a variable is called in a sentence."""
+    """Return what a measure or a variable is called in a sentence."""
     return name if name in _VARIABLES else measure(name).words
 
 
 def _unit(name: str) -> str:
-    """Its stored unit behind a number; empty for shares and ratios."""
+    """Return its stored unit behind a number; empty for shares and ratios."""
     unit = _VARIABLES[name].unit if name in _VARIABLES else measure(name).unit
     return "" if unit == "1" else f" {unit}"
 

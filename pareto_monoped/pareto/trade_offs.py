@@ -1,9 +1,4 @@
-"""Two ways to find where a front bends most.
-
-What a little more of the first objective costs, at one design of a front.
-
-How designs of a front are scored, and the objectives on one scale.
-"""
+"""Scores of designs by where a front bends most, and what a little more of the first objective costs at one design."""
 
 import math
 from collections.abc import Callable
@@ -31,13 +26,13 @@ class Scored:
 
 
 def scaled(values: Floats) -> Floats:
-    """Each column scaled to its extent, from 0 at its least to 1 at its greatest value; zeros where all are equal."""
+    """Return each column scaled to its extent, from 0 to 1; zeros where all values are equal."""
     least, extent = values.min(axis=0), np.ptp(values, axis=0)
     return np.where(extent > 0.0, (values - least) / np.where(extent > 0.0, extent, 1.0), 0.0)
 
 
 def losses(values: Floats, objectives: Objectives) -> Floats:
-    """Objectives scaled to the extent of the front, shape (n, m): 0 is the best of each, 1 the worst."""
+    """Return objectives scaled to the extent of the front, shape (n, m): 0 is the best of each, 1 the worst."""
     return scaled(objectives.minimised(values))
 
 
@@ -46,16 +41,12 @@ NEIGHBOURHOOD = 0.125
 
 
 def knee(values: Floats, objectives: Objectives) -> Scored:
-    """Das 1999 (On characterizing the "knee" of the Pareto curve): the distance from the chord.
+    """Compute scores by the distance from the chord (Das 1999, On characterizing the "knee" of the Pareto curve).
 
     With each objective scaled to the extent of the front and its better end at 1, the ends of a front of two objectives
     are (0, 1) and (1, 0), and a point's distance from the chord between them is (sum of the scaled objectives - 1) /
     sqrt(2). For three objectives the chord becomes the plane through (1, 0, 0), (0, 1, 0) and (0, 0, 1), and the
-    divisor sqrt(3).
-
-    Args:
-        values: shape (n, m), by the first objective.
-        objectives: which m measures these are.
+    divisor sqrt(3). ``values``, shape (n, m), are sorted by the first objective.
     """
     n, m = values.shape
     # The better end of a minimised objective lies at 1 - scaled. The ones are added last: with the paper's objectives
@@ -72,7 +63,7 @@ def knee(values: Floats, objectives: Objectives) -> Scored:
 
 
 def _flat(values: Floats, objectives: Objectives) -> str:
-    """What the knee is farthest from."""
+    """Return what the knee is farthest from."""
     if len(objectives.names) > 2:
         return "the plane through the best of each objective"
     first, last = values[0], values[-1]
@@ -84,14 +75,10 @@ def _flat(values: Floats, objectives: Objectives) -> str:
 
 
 def tradeoff(values: Floats, objectives: Objectives) -> Scored:
-    """Rachmawati and Srinivasan 2009: what a step to a neighbour gives up for what it gains, for the best neighbour.
+    """Compute scores by what the best step to a neighbour gives up for what it gains (Rachmawati and Srinivasan 2009).
 
     Both are sums over the objectives, scaled to the extent of the front. Neighbours are the designs within
     ``NEIGHBOURHOOD``, and at least the 2 m nearest ones and all that are as near.
-
-    Args:
-        values: shape (n, m).
-        objectives: which m measures these are.
     """
     points = losses(values, objectives)
     least = np.array([_least_bargain(points, i) for i in range(len(points))])
@@ -108,7 +95,7 @@ def tradeoff(values: Floats, objectives: Objectives) -> Scored:
 
 
 def _least_bargain(points: Floats, i: int) -> float:
-    """The least ratio of sacrifice to gain among the neighbours of one design; infinite if none gains anything."""
+    """Return the least ratio of sacrifice to gain among the neighbours of one design; infinite without any gain."""
     apart = np.linalg.norm(points - points[i], axis=1)
     others = np.arange(len(points)) != i
     nearest = np.sort(apart[others])[: 2 * points.shape[1]]
@@ -139,7 +126,7 @@ class OneMore:
     values: tuple[float, ...] = ()  #: of that design's objectives
 
     def text(self) -> str:
-        """In one sentence, such as "one more centimetre of height costs 0.52 J of energy (trial 3: ...)"."""
+        """Return a sentence such as "one more centimetre of height costs 0.52 J of energy (trial 3: ...)"."""
         if self.trial is None:
             return f"{self.step_words} cannot be had on this front"
         others = self.objectives.measures[1:]
@@ -153,23 +140,18 @@ class OneMore:
         return f"{self.step_words} {' and '.join(parts)} (trial {self.trial}: {self.objectives.text(self.values)})"
 
     def as_dict(self) -> dict[str, object]:
-        """As JSON values: the step, and the cost in each other objective."""
+        """Return the step, and the cost in each other objective, as JSON values."""
         first, *others = self.objectives.names
         costs = dict(zip(others, self.costs, strict=True)) if self.trial is not None else None
         return {"objective": first, "step": self.step, "trial": self.trial, "costs": costs}
 
 
 def one_more(front: "DataFrame", trial: int, objectives: Objectives) -> OneMore:
-    """What the next step in the first objective costs at a trial of the front.
+    """Return what the next step in the first objective costs at a trial of the front.
 
-    Differences between neighbours on a front jump, because a search finds designs at random distances. The cost is
-    therefore that of the cheapest design that is better by at least a whole step. With three objectives the cheapest is
-    that with the least sum of losses in the other two, scaled to the front's extent.
-
-    Args:
-        front: one row per design, in any order.
-        trial: one of them.
-        objectives: of the front.
+    Neighbours on a front are at random distances, so the cost is that of the cheapest design that is better by at least
+    a whole step: with three objectives that with the least sum of losses in the other two, scaled to the front's
+    extent.
     """
     values = front[list(objectives.names)].to_numpy(dtype=np.float64)
     row = int(np.flatnonzero(front["trial"].to_numpy() == trial)[0])
@@ -191,7 +173,7 @@ def one_more(front: "DataFrame", trial: int, objectives: Objectives) -> OneMore:
 
 
 def _step(values: NDArray[np.float64], objectives: Objectives) -> tuple[float, str]:
-    """Step in the stored unit, and in words: a power of ten in the shown unit for what has no natural step."""
+    """Return the step in the stored unit, and in words: a power of ten in the shown unit without a natural step."""
     entry = objectives.measures[0]
     if nominal(entry.name) in _STEPS:
         step, words = _STEPS[nominal(entry.name)]

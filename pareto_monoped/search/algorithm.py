@@ -1,8 +1,7 @@
-"""Define how run loop and search algorithms meet: ask for designs, tell their scores, save, restore.
+"""The interface of search algorithms: the run loop asks for designs, tells their scores, saves and restores.
 
-An algorithm never simulates and never stores. It sees the free variables only, in their own units, and a list of
-gearboxes by position (``study.coordinates``). A choice of motor is one more variable, whose values have no order
-(``study.motor_choice``): of the motor of both joints, or of that of the hip and that of the knee.
+An algorithm never simulates and never stores. It sees the free variables only, in their own units, a list of gearboxes
+by position and a choice of motor as one more variable, whose values have no order (``search.space``).
 """
 
 from abc import ABC, abstractmethod
@@ -54,8 +53,8 @@ class Space:
     """What is searched, and for what.
 
     Where a joint has one motor, a variable that chooses its gearbox has the whole numbers from 0 to n - 1. Where it has
-    several, n differs between motors. Such a variable then goes from 0, the first gearbox of whatever motor, to 1, its
-    last one, and the coordinate of the choice has the whole numbers from 0 to the number of motors less 1.
+    several, the variable goes from 0, the first gearbox of whatever motor, to 1, its last one, and the coordinate of
+    the choice has the whole numbers from 0 to the number of motors less 1.
 
     Example:
         >>> from pareto_monoped import MonopedProblem, Study
@@ -74,7 +73,7 @@ class Space:
     choices: tuple[MotorChoice, ...] = ()
 
     def __repr__(self) -> str:
-        """Say in one line what is varied, and for what."""
+        """Return one line: what is varied, and for what."""
         return f"Space({len(self.names)} variables: {', '.join(self.names)}; for {', '.join(self.objectives.names)})"
 
     @property
@@ -90,8 +89,8 @@ class Space:
     def snap(self, values: Floats) -> Floats:
         """Return the nearest points of the space to values within the edges, shape (n, d).
 
-        Whole numbers are rounded, and shares of a motor's list of gearboxes moved to that of their gearbox, so that
-        equal designs have equal values. All other values stay.
+        Whole numbers are rounded, and shares of a list of gearboxes moved to that of their gearbox, so that equal
+        designs have equal values.
         """
         snapped = np.where(self.whole, np.clip(np.round(values), self.lower, self.upper), values)
         for name in self.listed:
@@ -122,10 +121,7 @@ class Space:
         return self.picked(self.choice_for(name), values)
 
     def gear_of(self, name: str, values: Floats) -> NDArray[np.intp]:
-        """Return the position of each point's gearbox in its motor's list, shape (n, d) -> (n,).
-
-        Every gearbox of a list owns an equal share of the values from 0 to 1.
-        """
+        """Return the place of each point's gearbox in its motor's list, shape (n,); all own equal shares of 0 to 1."""
         last = self.last_gears(name)[self.motor_of(name, values)]
         share = values[:, self.names.index(name)]
         return np.minimum(np.floor(share * (last + 1)), last).astype(np.intp)
@@ -170,7 +166,7 @@ class Scores:
     constraints: Floats
 
     def __repr__(self) -> str:
-        """Say in one line how many designs there are, how many of them are feasible, and the objectives."""
+        """Return one line: the number of designs, how many are feasible, and the objectives."""
         feasible = int((self.violation <= 0.0).sum())
         return f"Scores({len(self.values)} designs, {feasible} feasible, {', '.join(self.objectives.names)})"
 
@@ -209,23 +205,12 @@ class Algorithm(ABC):
 
     @abstractmethod
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
-        """Continue from a saved state.
-
-        Args:
-            state: what ``state`` returned.
-            history: values and scores of every ``tell`` so far, in order. Some algorithms rebuild themselves from it;
-                the others ignore it.
-        """
+        """Continue from a saved state; ``history`` has values and scores of every ``tell`` so far, in order."""
 
     def same_designs(self, asked: Floats, stored: Floats) -> bool:
         """Check that designs which a restored algorithm asks for again are those stored: here, to the last bit."""
         return np.array_equal(asked, stored)
 
     def other_designs(self, trials: str, source: str) -> InputError:
-        """Return the error for stored trials that are not those asked for.
-
-        Args:
-            trials: which, in words.
-            source: the study's database, for the message.
-        """
+        """Return the error for stored ``trials``, in words, that are not those asked for."""
         return DatabaseError(f"{source}: {trials} do not follow from its checkpoint; it is damaged, restore a copy")

@@ -1,7 +1,4 @@
-"""Keep the simulated designs of a search, and find the front and how far the others are behind it.
-
-Importing this module imports numba.
-"""
+"""Keep the simulated designs of a search; find the front and how far the others are behind it. This imports numba."""
 
 from dataclasses import dataclass
 
@@ -58,11 +55,7 @@ class Standing:
 
 
 class Archive:
-    """Holds the designs that a search has simulated; of very many, those that tell it most.
-
-    Above ``_MOST`` designs, ``_KEPT`` stay: the front, evenly thinned if it is long, then the designs close behind it,
-    and a share spread over all others.
-    """
+    """Holds the designs that a search has simulated; of more than ``_MOST``, the ``_KEPT`` that tell it most."""
 
     def __init__(self, space: Space) -> None:
         self.space = space  #: what is searched
@@ -123,7 +116,7 @@ class Archive:
         )
 
     def _feasible_front(self) -> NDArray[np.intp]:
-        """Rows of the designs on the front, in their order."""
+        """Return rows of the designs on the front, in their order."""
         rows = np.concatenate((self._front, np.arange(self._fronted, len(self.values))))
         on_it = front_mask(self._objectives[rows], self.space.objectives, self._violation[rows] == 0.0)
         self._front, self._fronted = rows[on_it], len(self.values)
@@ -141,7 +134,7 @@ class Archive:
 def _told_most(standing: Standing, count: int) -> NDArray[np.intp]:
     """Choose rows of up to ``count`` designs that tell a search most, in the order of the trials.
 
-    Half of them may be the front, from end to end; three quarters of the others are the nearest behind it, the rest are
+    Half of them may be the front, evenly thinned; three quarters of the others are the nearest behind it, the rest are
     spread evenly over what lies farther.
     """
     front = standing.front
@@ -155,17 +148,10 @@ def _told_most(standing: Standing, count: int) -> NDArray[np.intp]:
 
 
 def shortfall(points: Floats, front: Floats) -> Floats:
-    """Measure how far points are behind a front: the shift in all objectives after which none is dominated.
+    """Measure how far points are behind a front, shape (n,): the shift in all objectives after which none is dominated.
 
-    The additive epsilon indicator (Zitzler et al. 2003) of the front against each point; below 0 for a point that gains
-    over the front.
-
-    Args:
-        points: objectives, less is better, shape (n, m).
-        front: shape (k, m), k at least 1, in the order of ``along``.
-
-    Returns:
-        Shape (n,).
+    The additive epsilon indicator (Zitzler et al. 2003) of the front, shape (k, m) with k at least 1 in the order of
+    ``along``, against each point, shape (n, m); less is better, and a point that gains over the front is below 0.
     """
     if front.shape[1] > 2:
         return _shortfall_of_more(points, front)
@@ -193,10 +179,7 @@ def _shortfall_of_more(points: Floats, front: Floats) -> Floats:
 
 
 def along(front: Floats) -> Floats:
-    """Sort a front of two objectives from end to end, shape (k, 2); return any other as it is.
-
-    Along it, a point falls ever less short in the first objective and ever more in the second.
-    """
+    """Sort a front of two objectives, shape (k, 2), by ever less of the first and more of the second; leave others."""
     return front[np.lexsort((-front[:, 1], front[:, 0]))] if front.shape[1] == 2 else front
 
 

@@ -23,8 +23,8 @@ from pareto_monoped.search.space import MotorPM, MotorSBX
 class Evolution(Algorithm):
     """Lets a genetic algorithm of pymoo ask for no design twice.
 
-    Between generations, all three keep only the population with its ranks and crowding distances, the number of
-    generations and the random generator. These are the state. The designs so far are in the history.
+    Its state is all that pymoo keeps between generations: the population with its ranks and crowding distances, the
+    number of generations and the random generator.
     """
 
     def __init__(self, space: Space, settings: EvolutionSettings, seed: int) -> None:
@@ -37,11 +37,7 @@ class Evolution(Algorithm):
         self._asked: Population = Population.empty()
 
     def ask(self) -> Proposal | None:
-        """Return the first population, later new offspring of the current one.
-
-        Where a population has only known offspring, as in a small space, new designs are drawn uniformly; None if
-        there are none left.
-        """
+        """Return new designs of the algorithm, uniform ones if it finds none; None if there are none left."""
         asked = self._algorithm.ask()
         if asked is None or len(asked) == 0:
             generator, size = self._algorithm.random_state, self._algorithm.pop_size
@@ -127,10 +123,7 @@ class _Unseen(DefaultDuplicateElimination):  # type: ignore[misc]  # pymoo has n
 
 
 def _varying(space: Space, settings: EvolutionSettings) -> tuple[SBX, PM]:
-    """Make the crossover and the mutation of all three.
-
-    pymoo shares its default operators between algorithms. New ones keep two studies in one process independent.
-    """
+    """Make the crossover and the mutation of all three; pymoo's defaults would be shared between studies."""
     crossover = {"prob": settings.crossover_probability, "eta": settings.crossover_eta}
     mutation = {"eta": settings.mutation_eta}
     if space.choices:

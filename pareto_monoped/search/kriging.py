@@ -1,4 +1,4 @@
-"""Simple kriging in many groups at once, compiled by numba. Importing this module imports numba.
+"""Simple kriging in many groups at once, compiled by numba, which this imports.
 
 Values at a group's points are alike as the Matérn kernel of smoothness 3/2 says (Rasmussen and Williams 2006, equation
 4.17). All loops run over consecutive numbers in memory and add in the same order, so a result depends neither on other
@@ -42,15 +42,11 @@ def _alike(squares: Floats, scale: float) -> None:
 
 @compiled
 def kriging_factors(points: Floats, ends: NDArray[np.intp], scale: float, nugget: float) -> Floats:
-    """The equations of each group: upper triangular factors of their kernel matrices, row after row, shape (numbers,).
+    """Return upper triangular factors of each group's kernel matrix, row after row, shape (numbers,).
 
-    They need no values, so they can be had while these are still being computed.
-
-    Args:
-        points: of all groups, one group after the other, shape (n, f).
-        ends: number of points up to the end of each group, shape (groups,).
-        scale: of squared distances, see ``_alike``.
-        nugget: share of an error that its neighbours do not have.
+    The points of all groups, shape (n, f), stand one group after the other; ``ends`` has the number of points up to the
+    end of each. ``scale`` is of squared distances, see ``_alike``; the ``nugget`` is the share of an error that its
+    neighbours do not have. No values are needed yet.
 
     Raises:
         numpy.linalg.LinAlgError: points of a group are equal, and the nugget is 0.
@@ -85,7 +81,7 @@ def kriging_factors(points: Floats, ends: NDArray[np.intp], scale: float, nugget
 
 @compiled
 def kriging_shares(factors: Floats, errors: Floats, ends: NDArray[np.intp]) -> Floats:
-    """How much each point counts where values are interpolated, shape (n, k).
+    """Return how much each point counts where values are interpolated, shape (n, k).
 
     Args:
         factors: what ``kriging_factors`` returned.
@@ -120,16 +116,7 @@ def kriging_shares(factors: Floats, errors: Floats, ends: NDArray[np.intp]) -> F
 def kriging_values(
     wanted: Floats, groups: NDArray[np.intp], points: Floats, shares: Floats, ends: NDArray[np.intp], scale: float
 ) -> Floats:
-    """Interpolated values at m points, shape (m, k).
-
-    Args:
-        wanted: these points, shape (m, f).
-        groups: the group that each is interpolated in, shape (m,).
-        points: see ``kriging_factors``.
-        shares: what ``kriging_shares`` returned.
-        ends: see ``kriging_factors``.
-        scale: see ``kriging_factors``.
-    """
+    """Interpolate at m points, shape (m, f), each in one of the groups, shape (m,); the result has the shape (m, k)."""
     count, width = wanted.shape
     values = np.zeros((count, shares.shape[1]))
     order = np.argsort(groups, kind="mergesort")

@@ -20,9 +20,9 @@ _KNOWN = 20
 class OptunaSampler(Algorithm):
     """Asks a sampler of Optuna, on a study in memory.
 
-    Optuna keeps what its samplers learn in the trials of its study; a sampler itself holds only a random generator.
-    Each generation therefore gets a new sampler, whose seed follows from the study's seed and the number of the
-    generation. The trials are then the whole state, and a study rebuilt from them continues exactly.
+    Optuna keeps what its samplers learn in the trials of its study. Each generation gets a new sampler, whose seed
+    follows from the study's seed and the number of the generation, so the trials are the whole state, and a study
+    rebuilt from them continues exactly.
     """
 
     def __init__(self, space: Space, settings: OptunaSettings, seed: int) -> None:
@@ -40,7 +40,7 @@ class OptunaSampler(Algorithm):
     def ask(self) -> Proposal | None:
         """Return the sampler's next new designs; uniform ones after ``_KNOWN`` known ones; None if there is no other.
 
-        Known designs end as failed trials. Samplers ignore those, so a study rebuilt without them continues alike.
+        Known designs end as failed trials, which samplers ignore: a study rebuilt without them continues alike.
         """
         batch, known, self._asked = self._settings.batch, 0, []
         with _quiet():

@@ -1,7 +1,7 @@
 """Check a search algorithm of the user's own, and rebuild it by asking it again.
 
-A database stores the name of its class, never the algorithm. Whether it asks for the same designs again is its
-author's duty; that it does is checked against all stored trials when a study goes on.
+A database stores the name of its class, never the algorithm. That it asks for the same designs again is checked against
+all stored trials when a study goes on.
 """
 
 import re
@@ -19,11 +19,7 @@ _SAME = 1e-9
 
 
 def own_algorithm_name(given: object) -> str:
-    """Return the name under which a study stores an algorithm of the user's own: "own:" and the name of its class.
-
-    Raises:
-        StudyError: it can neither be asked and told nor make something that can.
-    """
+    """Return "own:" and the name of the class; refuse what neither has ``ask`` and ``tell`` nor can be called."""
     if not (callable(given) or (hasattr(given, "ask") and hasattr(given, "tell"))):
         allowed = "a name, a mapping of settings, or an object with ask and tell or a function that makes one"
         raise StudyError(complaint("algorithm", given, allowed, "give one of these"))
@@ -37,17 +33,7 @@ class OwnAlgorithm(Algorithm):
     """Adapts an algorithm of the user's own, whose trials are replayed on restore."""
 
     def __init__(self, space: Space, settings: OwnSettings, seed: int, given: Any) -> None:
-        """Take the algorithm, or make it.
-
-        Args:
-            space: what is searched.
-            settings: the algorithm's name.
-            seed: the study's.
-            given: an object with ``ask`` and ``tell``, or a class or function of ``space`` and ``seed`` that makes one.
-
-        Raises:
-            StudyError: none is given, one of another name, or it cannot be made.
-        """
+        """Take an object with ``ask`` and ``tell``, or call what makes one of space and seed; none raises."""
         self._space = space
         self._source = f"own algorithm {settings.name.removeprefix(OWN_ALGORITHM)!r}"
         if given is None:
@@ -65,11 +51,7 @@ class OwnAlgorithm(Algorithm):
                 raise StudyError(f"{self._source}: has no {part}(); it must have ask() and tell(scores)")
 
     def ask(self) -> Proposal | None:
-        """Return the designs that the algorithm gives: an array of shape (n, d), a ``Proposal``, or None at its end.
-
-        Raises:
-            StudyError: they are something else, or beyond the bounds.
-        """
+        """Return the designs that the algorithm gives: an array of shape (n, d), a ``Proposal``, or None at its end."""
         given = self._called(self._inner.ask)
         if given is None:
             return None
@@ -86,11 +68,7 @@ class OwnAlgorithm(Algorithm):
         return {}
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
-        """Replay the stored trials.
-
-        Raises:
-            StudyError: it asks for other designs than those stored.
-        """
+        """Replay the stored trials; raise ``StudyError`` if the algorithm asks for other designs."""
         for number, (values, scores) in enumerate(history):
             asked = self.ask()
             if asked is None or not self.same_designs(asked.values, values):
@@ -98,11 +76,7 @@ class OwnAlgorithm(Algorithm):
             self.tell(scores)
 
     def same_designs(self, asked: Floats, stored: Floats) -> bool:
-        """Compare the number of designs, and every value to nine digits.
-
-        One rule holds for whole generations and for one that was cut short. Equality to the last bit would be too
-        much: another version of a library may round a value of the user's own algorithm differently.
-        """
+        """Compare every value to nine digits: another version of a library may round otherwise in the last ones."""
         return asked.shape == stored.shape and bool(np.allclose(asked, stored, rtol=_SAME, atol=_SAME))
 
     def other_designs(self, trials: str, source: str) -> StudyError:

@@ -1,7 +1,4 @@
-"""What a search expects of designs that it has not simulated: a polynomial, corrected by its errors near by.
-
-Choose which of many designs are worth simulating, by what a model expects of them.
-"""
+"""Predict the scores of designs by a polynomial corrected by its errors near by, and rank what is worth simulating."""
 
 from collections.abc import Callable
 from concurrent.futures import Executor
@@ -53,21 +50,13 @@ class Prediction:
 
     A weighted cubic follows the course of the measures. In each part of the front, its errors at the latest designs
     there are interpolated by simple kriging with the Matérn kernel of smoothness 3/2 (Rasmussen and Williams 2006,
-    equations 2.25 and 4.17). Close to simulated designs, a prediction is therefore as good as exact. The latest designs
-    tell most: a promise that was not kept is not made again.
+    equations 2.25 and 4.17), so that predictions close to simulated designs are as good as exact.
     """
 
     def __init__(
         self, archive: Archive, standing: Standing, features: Features, helper: Executor | None = None
     ) -> None:
-        """A model of what an archive knows.
-
-        Args:
-            archive: the simulated designs.
-            standing: how they stand.
-            features: of their space.
-            helper: takes half of the designs of ``rough`` and ``fine``; it must be idle then.
-        """
+        """Make a model of an archive; ``helper``, idle when it is asked, takes half of the designs to predict."""
         self._features, self._helper = features, helper
         self._points = archive.points
         missed = archive.constraints
@@ -84,7 +73,7 @@ class Prediction:
         _ = self._coefficients
 
     def look_around(self) -> None:
-        """Find the designs that correct the cubic, which needs no cubic; else done when they are first needed."""
+        """Find the designs that correct the cubic; otherwise done when they are first needed."""
         _ = self._neighbours
 
     @cached_property
@@ -99,16 +88,16 @@ class Prediction:
         return len(self._standing.order) >= len(self._coefficients)
 
     def rough(self, values: Floats) -> tuple[Floats, Floats]:
-        """Costs, shape (n, m), as ``Standing`` has them, and sum of missed constraints, shape (n,), by the cubic."""
+        """Return costs, shape (n, m), as ``Standing`` has them, and sums of missed constraints, (n,), by the cubic."""
         return self._split(self._halved(self._cubic, values))
 
     def fine(self, values: Floats) -> tuple[Floats, Floats]:
-        """The same with the cubic's errors corrected, in the part of the front that the cubic sees a design in."""
+        """Return the same with the cubic's errors corrected in the part of the front that a design seems to be in."""
         _ = self._shares  # which both threads need
         return self._split(self._halved(self._corrected, values))
 
     def _halved(self, predict: Callable[[Floats], Floats], values: Floats) -> Floats:
-        """What ``predict`` makes of the features of designs, shape (n, d); the helper does half if there are many."""
+        """Return ``predict`` of the features of designs, shape (n, d); the helper does half if there are many."""
         points, half = self._features.scaled(values), len(values) // 2
         if self._helper is None or half < _SHARED:
             return predict(points)
@@ -145,7 +134,7 @@ class Prediction:
         return kriging_shares(known.factors, self._targets[known.rows] - self._cubic(known.points), known.ends)
 
     def _latest(self, part: int) -> NDArray[np.intp]:
-        """Rows of the latest designs in a part of the front and close behind it; the nearest others if too few."""
+        """Return rows of the latest designs in or close behind a part of the front, the nearest others if too few."""
         standing, known = self._standing, self._known
         if len(standing.posts) == 0:
             return standing.order[:_CORRECTING]
@@ -168,7 +157,7 @@ class Prediction:
         return self._standing.scaled(self._standing.costs[self._known])
 
     def _away(self, part: int) -> Floats:
-        """Squared distance of these designs from a post, shape (designs,)."""
+        """Return the squared distance of these designs from a post, shape (designs,)."""
         away: Floats = cdist(self._standing.stands[part : part + 1], self._places, "sqeuclidean")[0]
         return away
 
@@ -180,7 +169,7 @@ class Prediction:
 
 
 def _training(order: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Rows that the polynomial is fitted to: the nearest the front, and others spread evenly over all behind them."""
+    """Return rows to fit: the nearest the front, and others spread evenly over all behind them."""
     if len(order) <= _TRAINING:
         return order
     spread_out = round(_SPREAD_SHARE * _TRAINING)
@@ -189,7 +178,7 @@ def _training(order: NDArray[np.intp]) -> NDArray[np.intp]:
 
 
 def _least(values: Floats, count: int) -> NDArray[np.intp]:
-    """Places of the ``count`` least values, the least first, of equals the first first; shape (n,) -> (count,)."""
+    """Return places of the ``count`` least values, shape (n,) -> (count,), the least first; ties in their order."""
     if count >= len(values):
         return np.argsort(values, kind="stable")
     candidates = np.flatnonzero(values <= np.partition(values, count - 1)[count - 1])
@@ -217,15 +206,10 @@ CURIOSITY = 0.1
 
 
 def ranked(costs: Floats, violation: Floats, standing: Standing) -> NDArray[np.intp]:
-    """Sort rows of n designs by how much they are worth simulating.
+    """Sort n designs by what simulating them is worth, from expected costs, (n, m), and violations, (n,).
 
-    The best gain over the front in each of its parts comes first, then the second best, and so on. Without a front,
-    the least violation comes first.
-
-    Args:
-        costs: expected costs, as ``Standing`` has them, shape (n, m).
-        violation: expected sum of missed constraints, shape (n,).
-        standing: of the simulated designs.
+    The best gain over the front in each of its parts comes first, then the second best, and so on. Without a front, the
+    least violation comes first.
     """
     if len(standing.front) == 0:
         return np.argsort(violation, kind="stable")
@@ -245,16 +229,7 @@ def _in_turns(parts: NDArray[np.intp]) -> NDArray[np.intp]:
 def unlike(
     costs: Floats, violation: Floats, standing: Standing, points: Floats, known: Floats, count: int
 ) -> list[int]:
-    """Choose rows of ``count`` of n designs that promise much and are far from what is known, and from each other.
-
-    Args:
-        costs: expected costs, as ``Standing`` has them, shape (n, m).
-        violation: expected sum of missed constraints, shape (n,).
-        standing: of the simulated designs; it has a front.
-        points: the designs' features, shape (n, f).
-        known: features of the simulated designs, shape (k, f).
-        count: how many.
-    """
+    """Choose rows of ``count`` of n designs that promise much and are far from ``known`` features and each other."""
     gain = gains(costs, violation, standing, LENIENT_PENALTY)
     looked_at = np.argsort(-gain, kind="stable")[: count * _LOOKED_AT]
     points, gain = points[looked_at], gain[looked_at]
@@ -270,12 +245,5 @@ def unlike(
 
 
 def gains(costs: Floats, violation: Floats, standing: Standing, penalty: float = _PENALTY) -> Floats:
-    """Measure how far n designs are ahead of the front, as a share of its extent, less what violations cost: (n,).
-
-    Args:
-        costs: expected costs, as ``Standing`` has them, shape (n, m).
-        violation: expected sum of missed constraints, shape (n,).
-        standing: of the simulated designs; it has a front.
-        penalty: what a violation of 1 costs.
-    """
+    """Return how far n designs are ahead of the front, as a share of its extent, less what violations cost: (n,)."""
     return -shortfall(standing.scaled(costs), standing.line) - penalty * violation

@@ -1,6 +1,5 @@
 """Make the search algorithm that a study's settings name. Each implementation is imported only when it is used."""
 
-from functools import singledispatch
 from typing import Any
 
 from pareto_monoped.definition.algorithms import (
@@ -20,12 +19,7 @@ from pareto_monoped.search.space import Coordinates, plain_coordinates
 
 
 def make_algorithm(study: Study, coordinates: Coordinates | None = None, own: Any = None) -> Algorithm:
-    """Make the search algorithm that the study's settings name, before its first ``ask``.
-
-    Args:
-        study: its settings.
-        coordinates: what it searches; every free variable within its bounds if None.
-        own: the user's own algorithm, see ``own_algorithm``, where the settings name one.
+    """Make the search algorithm of the study's settings, with every free variable within its bounds by default.
 
     Raises:
         StudyError: the settings name the user's own algorithm, and ``own`` is another or None.
@@ -35,53 +29,31 @@ def make_algorithm(study: Study, coordinates: Coordinates | None = None, own: An
         raise StudyError(
             f"algorithm: an own one is given, but the study's is {settings.name!r}, which it knows; leave it out"
         )
-    return _made(settings, study, coordinates or plain_coordinates(study), own)
+    where = coordinates or plain_coordinates(study)
+    match settings:
+        case EvolutionSettings():
+            from pareto_monoped.search.evolution import Evolution
 
+            return Evolution(where.space, settings, study.seed)
+        case OptunaSettings():
+            from pareto_monoped.search.optuna_samplers import OptunaSampler
 
-@singledispatch
-def _made(settings: Any, study: Study, where: Coordinates, own: Any) -> Algorithm:
-    """Make an algorithm. Each function registered here belongs to the settings that its first argument is of."""
+            return OptunaSampler(where.space, settings, study.seed)
+        case OwnSettings():
+            from pareto_monoped.search.own_algorithm import OwnAlgorithm
+
+            return OwnAlgorithm(where.space, settings, study.seed, own)
+        case RandomSettings():
+            from pareto_monoped.search.seen import RandomSearch
+
+            return RandomSearch(where.space, settings, study.seed)
+        case SurrogateSettings():
+            from pareto_monoped.search.surrogate import SurrogateSearch
+
+            return SurrogateSearch(where.space, settings, study.seed)
+        case WeightedSettings():
+            from pareto_monoped.search.weighted import WeightedSearch
+
+            start = where.values(PAPER_CASES["nominal"].design.replace(settings.start).as_array()[None])[0]
+            return WeightedSearch(where.space, settings, start, study.seed, study.reference_point)
     raise NotImplementedError(f"no algorithm for {settings!r}")
-
-
-@_made.register
-def _(settings: EvolutionSettings, study: Study, where: Coordinates, own: Any) -> Algorithm:
-    from pareto_monoped.search.evolution import Evolution
-
-    return Evolution(where.space, settings, study.seed)
-
-
-@_made.register
-def _(settings: OptunaSettings, study: Study, where: Coordinates, own: Any) -> Algorithm:
-    from pareto_monoped.search.optuna_samplers import OptunaSampler
-
-    return OptunaSampler(where.space, settings, study.seed)
-
-
-@_made.register
-def _(settings: OwnSettings, study: Study, where: Coordinates, own: Any) -> Algorithm:
-    from pareto_monoped.search.own_algorithm import OwnAlgorithm
-
-    return OwnAlgorithm(where.space, settings, study.seed, own)
-
-
-@_made.register
-def _(settings: RandomSettings, study: Study, where: Coordinates, own: Any) -> Algorithm:
-    from pareto_monoped.search.random_search import RandomSearch
-
-    return RandomSearch(where.space, settings, study.seed)
-
-
-@_made.register
-def _(settings: SurrogateSettings, study: Study, where: Coordinates, own: Any) -> Algorithm:
-    from pareto_monoped.search.surrogate import SurrogateSearch
-
-    return SurrogateSearch(where.space, settings, study.seed)
-
-
-@_made.register
-def _(settings: WeightedSettings, study: Study, where: Coordinates, own: Any) -> Algorithm:
-    from pareto_monoped.search.weighted import WeightedSearch
-
-    start = PAPER_CASES["nominal"].design.replace(settings.start).as_array()
-    return WeightedSearch(where.space, settings, where.values(start[None])[0], study.seed, study.reference_point)

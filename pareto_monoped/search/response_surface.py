@@ -1,6 +1,4 @@
-"""A cheap model of what a search needs to know: weighted cubic ridge regression on features of a design.
-
-Compute cubic polynomials of many points. Importing this module imports numba.
+"""A cheap model of a design's scores: weighted cubic ridge regression on its features. This imports numba.
 
 A cubic of f features has a coefficient for every product of three of (1, features), repeated ones too, in the order of
 ``itertools.combinations_with_replacement``.
@@ -32,8 +30,7 @@ def cubic_terms(points: Floats) -> Floats:
 def cubic_values(points: Floats, coefficients: Floats) -> Floats:
     """Compute ``cubic_terms(points) @ coefficients`` but for rounding, shape (n, f) and (t, k) -> (n, k).
 
-    Nested as by Horner, it takes a multiplication per term and point, and none of the terms is stored. A value does not
-    depend on the other points.
+    Nested as by Horner, it takes a multiplication per term and point, stores no terms, and treats each point alone.
     """
     count, width, targets = points.shape[0], points.shape[1] + 1, coefficients.shape[1]
     result = np.empty((count, targets))
@@ -90,7 +87,7 @@ class Features:
     tables: Mapping[str, Floats]
 
     def scaled(self, values: Floats) -> Floats:
-        """Features of n points from -1 to 1, shape (n, d) -> (n, f)."""
+        """Return features of n points from -1 to 1, shape (n, d) -> (n, f)."""
         scaled = _raw(self.space, self.tables, values)
         scaled -= self.lower
         scaled *= 2.0
@@ -99,12 +96,12 @@ class Features:
         return scaled
 
     def terms(self, values: Floats) -> Floats:
-        """Terms of n points, shape (n, d) -> (n, t); the constant is the first."""
+        """Return terms of n points, shape (n, d) -> (n, t); the constant is the first."""
         return cubic_terms(self.scaled(values))
 
 
 def features_of(space: Space) -> Features:
-    """The features of a space."""
+    """Return the features of a space."""
     tables = _tables(space)
     raw = _raw(space, tables, _extremes(space))
     lower, upper = raw.min(axis=0), raw.max(axis=0)
@@ -112,7 +109,7 @@ def features_of(space: Space) -> Features:
 
 
 def _extremes(space: Space) -> Floats:
-    """Points of a space among which every feature has its least and its greatest value, shape (n, d)."""
+    """Return points of a space among which every feature has its least and its greatest value, shape (n, d)."""
     corners = np.vstack((space.lower, space.upper))
     blocks = [corners]
     for choice in space.choices:
@@ -130,7 +127,7 @@ def _extremes(space: Space) -> Floats:
 
 
 def _tables(space: Space) -> dict[str, Floats]:
-    """Features of every gearbox of a list and of every motor of a choice; see ``Features.tables``."""
+    """Return features of every gearbox of a list and of every motor of a choice; see ``Features.tables``."""
     tables = {name: np.array([[gear.ratio, gear.mass_kg] for gear in gears]) for name, gears in space.gears.items()}
     for choice in space.choices:
         tables[choice.name] = _motors(choice)
@@ -141,7 +138,7 @@ def _tables(space: Space) -> dict[str, Floats]:
 
 
 def _raw(space: Space, tables: Mapping[str, Floats], values: Floats) -> Floats:
-    """Features before scaling, shape (n, d) -> (n, f)."""
+    """Return features before scaling, shape (n, d) -> (n, f)."""
     columns, listed = [], space.listed
     for name, column in zip(space.names, values.T, strict=True):
         if name in space.gears:
@@ -158,12 +155,12 @@ def _raw(space: Space, tables: Mapping[str, Floats], values: Floats) -> Floats:
 
 
 def _motors(choice: MotorChoice) -> Floats:
-    """Logarithms of greatest torque and speed of each motor, shape (number of motors, 2)."""
+    """Return logarithms of greatest torque and speed of each motor, shape (number of motors, 2)."""
     return np.log([[motor.peak_torque_n_m, motor.no_load_speed_rad_per_s] for motor in choice.motors])
 
 
 def _actuators(space: Space, tables: Mapping[str, Floats], name: str, values: Floats) -> Floats:
-    """Features of the actuators that ``name`` chooses, shape (n, d) -> (n, 3)."""
+    """Return features of the actuators that ``name`` chooses, shape (n, d) -> (n, 3)."""
     choice = space.choice_for(name)
     first = np.cumsum([0, *(len(motor.gears[name]) for motor in choice.motors[:-1])])
     motors = space.picked(choice, values)
@@ -173,19 +170,7 @@ def _actuators(space: Space, tables: Mapping[str, Floats], name: str, values: Fl
 
 
 def fitted(points: Floats, targets: Floats, weights: Floats) -> Floats:
-    """Coefficients of the weighted ridge regression.
-
-    Args:
-        points: scaled features of n points, shape (n, f).
-        targets: shape (n, k).
-        weights: of the points' squared errors, at least 0, shape (n,).
-
-    Returns:
-        Shape (t, k); ``cubic_values`` makes predictions of them.
-
-    Raises:
-        numpy.linalg.LinAlgError: a target, a weight or a feature is not a number.
-    """
+    """Return coefficients, (t, k), of points, (n, f), targets, (n, k), and weights, (n,), for ``cubic_values``."""
     gram, right = _normal_equations(points, targets, weights)
     # The first term is the constant, whose mean square is the sum of the weights; it is not held back.
     ridge = np.full(len(gram), _RIDGE * weights.sum())
@@ -198,10 +183,7 @@ def fitted(points: Floats, targets: Floats, weights: Floats) -> Floats:
 
 
 def _normal_equations(points: Floats, targets: Floats, weights: Floats) -> tuple[Floats, Floats]:
-    """Weighted sums of the products of all pairs of terms, shape (t, t), and of terms and targets, shape (t, k).
-
-    Above the diagonal, only blocks on it are computed; the lower half is what counts.
-    """
+    """Return weighted sums of products of pairs of terms, (t, t), right below the diagonal; and with targets."""
     first = cubic_terms(points[:1])
     size, half = first.shape[1], first.shape[1] // 2
     gram, right = np.zeros((size, size)), np.zeros((size, targets.shape[1]))

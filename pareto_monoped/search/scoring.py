@@ -31,9 +31,8 @@ def judge(evaluations: Evaluations, constraints: Constraints, objectives: Object
     """Judge evaluations by a study's constraints.
 
     A jump failed if its status says so, or if its height, its energy or an objective is not a finite number. The
-    violation is graded: (limit - value) / limit for a lower limit, (value - limit) / limit for an upper one. A search
-    can thus see which of two infeasible designs is closer to being feasible. A measure without a value misses its
-    limit as a failed jump does.
+    violation is graded, so that a search sees which of two infeasible designs is closer. A measure without a value
+    misses its limit as a failed jump does.
     """
     failed = evaluations.status != "ok"
     for name in dict.fromkeys((*HEIGHT_AND_ENERGY.names, *objectives.names)):
@@ -53,13 +52,7 @@ def judge(evaluations: Evaluations, constraints: Constraints, objectives: Object
 def missed(
     constraints: Constraints, measures: Mapping[str, ArrayLike], failed: NDArray[np.bool_]
 ) -> NDArray[np.float64]:
-    """How far n designs miss k constraints, as shares of their limits, shape (n, k).
-
-    Args:
-        constraints: the limits.
-        measures: values of each constrained measure, shape (n,).
-        failed: which jumps failed, shape (n,).
-    """
+    """Return how far n designs miss k constraints, as shares of their limits, shape (n, k)."""
     table = np.zeros((len(failed), len(constraints.limits)))
     for column, limit in zip(table.T, constraints.limits, strict=True):
         values = np.asarray(measures[limit.measure], dtype=np.float64)
@@ -68,12 +61,12 @@ def missed(
 
 
 def values_of(evaluations: Evaluations, objectives: Objectives) -> NDArray[np.float64]:
-    """The objectives' values in stored units, shape (n, m)."""
+    """Return the objectives' values in stored units, shape (n, m)."""
     return np.column_stack([evaluations.of(name) for name in objectives.names])
 
 
 def scores(evaluations: Evaluations, judgement: Judgement, objectives: Objectives = HEIGHT_AND_ENERGY) -> Scores:
-    """What a search algorithm may know about these evaluations."""
+    """Return what a search algorithm may know about these evaluations."""
     return Scores(
         objectives=objectives,
         values=values_of(evaluations, objectives),

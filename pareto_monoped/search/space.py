@@ -1,17 +1,9 @@
-"""Turn designs into search coordinates, which are what an algorithm sees of them, and back.
+"""Turn designs into search coordinates and back; vary those that choose a motor.
 
-A gear ratio only selects a gearbox, so a study with ``gear_list`` searches the list of gearboxes by position and stores
-the real ratio of the chosen one. All other free variables are coordinates as they are.
-
-Give each choice of a study between several motors a search coordinate, whose values have no order.
-
-A study chooses the motor of both joints, or that of the hip and that of the knee. Each motor has its own list of
-gearboxes, of its own length. A free gear ratio is therefore a share of the list of its joint's motor, from 0, its
-lowest ratio, to 1, its highest: when the motor changes, a low ratio stays a low one.
-
-Vary a choice that has no order: a child takes its parents' choice, a mutation takes any other one.
-
-Operators for numbers would draw a motor between two motors, or prefer the neighbours in the list.
+With ``gear_list``, a gear ratio is the position of a gearbox in a list; designs store the real ratio of that gearbox. A
+choice between motors is a coordinate without order: children take their parents' choice, and mutations any other one.
+Each motor has its own list of gearboxes; a ratio is then a share of it, from 0, the lowest, to 1, the highest, so that
+a low ratio stays low when the motor changes. All other free variables are coordinates as they are.
 """
 
 from abc import ABC, abstractmethod
@@ -25,7 +17,6 @@ from pymoo.core.problem import Problem
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
 
-from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.ratiomap import ActuatorMap, JointMaps, Maps, joint_maps
 from pareto_monoped.definition.study import Study
 from pareto_monoped.definition.variables import Bounds
@@ -38,7 +29,7 @@ Motors = Mapping[str, tuple[str, ...]]
 
 
 class Coordinates(ABC):
-    """Base class of the coordinates of a study: ``KitCoordinates``, and ``motor_choice.MotorCoordinates``."""
+    """Base class of the coordinates of a study: ``KitCoordinates`` and ``MotorCoordinates``."""
 
     study: Study  #: the definition
 
@@ -68,10 +59,7 @@ class Coordinates(ABC):
         """Return the least and the greatest value of a free variable in a stored design, whatever its motors."""
 
     def motor_limits(self, name: str) -> tuple[str, dict[str, tuple[float, float]]] | None:
-        """Find which choice decides a variable's gearboxes, and their least and greatest ratio with each motor.
-
-        None for a variable whose limits are the same with every motor.
-        """
+        """Return the choice that decides a variable's gearboxes, and the ratios' ends with each motor; else None."""
         return None
 
 
@@ -170,9 +158,8 @@ def plain_coordinates(study: Study) -> KitCoordinates:
 def gear_list(actuator_map: ActuatorMap, bounds: Bounds) -> tuple[Gear, ...]:
     """List the gearboxes that ratios within the bounds, both included, lead to; by ascending real ratio.
 
-    An interval of the map counts if the bounds touch it, so that 8.7 as the upper bound includes the gearbox of
-    [8.7, 8.8), whose real ratio may be a little more. Where all intervals within the bounds are empty, there is none:
-    a gearbox from outside does not stand in for all of them.
+    An interval of the map counts if the bounds touch it, so that 8.7 as the upper bound includes the gearbox of [8.7,
+    8.8). Where all intervals within the bounds are empty, there is none.
     """
     lows = actuator_map.ratios_low
     within = lows[(lows > bounds.lower) & (lows < bounds.upper)]
@@ -185,12 +172,8 @@ def gear_list(actuator_map: ActuatorMap, bounds: Bounds) -> tuple[Gear, ...]:
     for index in chosen[chosen >= 0]:
         actuator = actuator_map.entries[index].actuator
         assert actuator is not None
-        gears.append(_gear(actuator))
+        gears.append(Gear(ratio=actuator.ratio, mass_kg=actuator.mass_kg))
     return tuple(sorted(gears, key=lambda gear: gear.ratio))
-
-
-def _gear(actuator: Actuator) -> Gear:
-    return Gear(ratio=actuator.ratio, mass_kg=actuator.mass_kg)
 
 
 @dataclass(frozen=True, kw_only=True)  # without slots: the cached property needs a place to keep its value
@@ -298,23 +281,14 @@ class MotorCoordinates(Coordinates):
 
 
 def searched_coordinates(study: Study, maps: Sequence[Maps]) -> Coordinates:
-    """Make the coordinates of a study, with the maps of each of its kits of motors (``Study.kits``).
-
-    Raises:
-        StudyError: a motor has no gearbox with a ratio within the bounds of a free gear ratio.
-    """
+    """Make the coordinates of a study, with the maps of each of its kits of motors (``Study.kits``)."""
     kits = tuple(map(joint_maps, maps))
     parts = tuple(coordinates_of(study, one) for one in kits)
     return parts[0] if len(parts) == 1 else MotorCoordinates(study=study, maps=kits, parts=parts)
 
 
 def kit_maps(study: Study, maps: Sequence[ActuatorMap]) -> tuple[JointMaps, ...]:
-    """Return the gearboxes of each kit of motors.
-
-    Args:
-        study: the definition.
-        maps: the gearboxes of each of ``Study.motors``.
-    """
+    """Return the gearboxes of each kit of motors, from those of each of ``Study.motors``."""
     of = dict(zip(study.motors, maps, strict=True))
     return tuple(JointMaps(hip=of[hip], knee=of[knee]) for hip, knee in study.kits)
 

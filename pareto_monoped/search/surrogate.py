@@ -1,10 +1,7 @@
 """Search by many offspring, ranked by a cheap model, of which the most promising are simulated.
 
-Linear algebra on one thread.
-
-Local searches on the model alone: where designs lead once every variable is chosen anew.
-
-Where a search over motors looks at the ends of each motor's own front, so that none is given up too early.
+Local searches on the model alone show where designs lead once every variable is chosen anew. A search over motors also
+looks at the ends of each motor's own front, so that none is given up too early.
 """
 
 from collections.abc import Iterable, Iterator
@@ -27,11 +24,10 @@ from pareto_monoped.search.variation import exchanges, offspring, scans, small_s
 
 
 def one_thread() -> Any:
-    """A context in which numpy's and scipy's linear algebra uses one thread.
+    """Return a context in which linear algebra uses one thread.
 
-    Sums of several threads depend on their number, so a search would take another course on a machine with other cores.
-    Matrices of a few hundred rows are also faster on one thread, many times so on a busy machine: OpenBLAS's threads
-    wait for each other in busy loops.
+    Sums of several threads depend on their number, so a search would take another course on other machines. Matrices of
+    a few hundred rows are also faster: OpenBLAS's threads wait for each other in busy loops.
     """
     return _controller().limit(limits=1, user_api="blas")
 
@@ -69,13 +65,6 @@ def climbs(
 
     Each change is the best of single variables elsewhere and of small steps of several, or none. A climb ends in one
     generation where evolution arrives after many, or never, since it drops designs that do not yet gain.
-
-    Args:
-        space: the space.
-        start: where the climbs begin, at least one design.
-        prediction: the model.
-        standing: of the simulated designs; it has a front.
-        generator: source of all choices.
     """
     count, dimensions = start.shape
     best, every, looked_at = start, np.arange(count), 0
@@ -105,24 +94,14 @@ def ends_of_least_tried(
     prediction: Prediction,
     generator: np.random.Generator,
 ) -> Iterator[Floats]:
-    """New designs of the motor that has the fewest, the most promising in one objective first; once per objective.
+    """Yield per objective new designs, shape (n, d), of the motor that has the fewest, the most promising first.
 
     The model knows little of a motor with few designs, and by what it knows, the heaviest motor, which alone jumps
     highest, never comes near the front. Without these designs, five searches over the six motors had 94.6 to 99.7
     percent of the hypervolume of four motors' fronts after 4,000 jumps, with them 99.7 in each.
 
-    From the best design so far, each change goes to the best of all that are looked at, also if it promises less: a
-    climb that may stay where it is looks at nothing new. For the same reason, distance from all known designs counts.
-
-    Args:
-        features: of the space, which has a choice of motors.
-        archive: the simulated designs.
-        standing: how they stand.
-        prediction: the model.
-        generator: source of all choices.
-
-    Yields:
-        Designs, shape (n, d).
+    From the best design so far, each change goes to the best of all that are looked at, also if it promises less,
+    because a climb that stays looks at nothing new. For the same reason, distance from all known designs counts.
     """
     space = archive.space
     column, motor = _least_tried(space, archive.values, standing)
@@ -145,7 +124,7 @@ def ends_of_least_tried(
 
 
 def _least_tried(space: Space, values: Floats, standing: Standing) -> tuple[int, int]:
-    """Column of a choice, and the motor there, that the fewest designs have of those that jumped with it at all."""
+    """Return the column of a choice, and the motor there that the fewest designs have of those that jumped at all."""
     tried: list[tuple[int, int, int]] = []
     for column, choice in zip(space.choice_columns, space.choices, strict=True):
         for motor in range(len(choice.motors)):
@@ -198,19 +177,16 @@ the best known at 1.1 m, where all 15 are within 0.3 percent with twice as many.
 class SurrogateSearch(Algorithm):
     """Evolves designs, and simulates the most promising of many offspring.
 
-    The first generations are spread over the space, half of them over its bounds and corners, too. Later, each
-    generation varies the designs on the front so far and predicts objectives and constraints of the offspring
-    (``Prediction``). The most promising are varied again, in steps from fine to coarse, a few designs of the front get
-    every other gearbox, and, once the model has a design for each of its terms, some climb as far as it leads them
-    (``climbs``): designs from anywhere, from the front and close to it, and designs of the front whose links or
-    gearboxes are exchanged. Of all these, the search asks for those that gain most over the front, the best of each
-    part of it first: the ends of the front are parts, too. A tenth of each generation explores: it is far from all
-    simulated designs, and still promising. Half of that are the ends of climbs. Where motors are chosen, the motor with
-    the fewest designs gets some at the ends of its own front instead (``ends_of_least_tried``).
+    The first generations are spread over the space, half of them over its bounds and corners, too. Later generations
+    vary the designs on the front and predict the offspring's scores (``Prediction``). The most promising are varied
+    again in small steps, a few designs of the front get every other gearbox, and, once the model has a design for each
+    of its terms, some climb (``climbs``): from anywhere, from the front and close to it, and with links or gearboxes
+    exchanged. Of all these, the search asks for those that gain most over the front, the best of each part of it first.
+    A tenth of each generation explores far from all simulated designs. Where motors are chosen, the motor with the
+    fewest designs gets some at the ends of its own front (``ends_of_least_tried``).
 
-    Every generation refines, so a search that gets a larger budget goes on as if it had had it from the beginning.
     Every generation has its own random generator, whose seed follows from the study's. The simulated designs are
-    therefore the whole state, and a search rebuilt from them continues bit for bit.
+    therefore the whole state, and a search rebuilt from them, also with a larger budget, continues bit for bit.
     """
 
     def __init__(self, space: Space, settings: SurrogateSettings, seed: int) -> None:
@@ -287,10 +263,7 @@ class SurrogateSearch(Algorithm):
     def _most_promising(
         self, values: Floats, prediction: Prediction, standing: Standing, generator: np.random.Generator
     ) -> Floats:
-        """Choose a generation from offspring, shape (n, d), small steps around the best, and climbs.
-
-        Those that explore come last.
-        """
+        """Choose a generation from offspring, shape (n, d), small steps around the best, and climbs; explorers last."""
         size = self._size
         best = values[ranked(*prediction.rough(values), standing)[: _REFINED * size]]
         swapped = swaps(

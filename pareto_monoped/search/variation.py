@@ -24,13 +24,9 @@ _ALIKE = (("thigh_length_m", "shank_length_m"), ("knee_ratio", "hip_ratio"))
 
 
 def spread(space: Space, count: int, generator: np.random.Generator, on_bound: float = 0.0) -> Floats:
-    """Designs spread over the space, shape (n, d): a Latin hypercube (McKay, Beckman, Conover 1979).
+    """Spread designs over the space, shape (n, d): a Latin hypercube (McKay, Beckman, Conover 1979).
 
-    Args:
-        space: the space.
-        count: n.
-        generator: source of all choices.
-        on_bound: share of each variable's values that are on its lower bound; as many are on its upper bound.
+    A share ``on_bound`` of each variable's values is on its lower bound, and as many are on its upper bound.
     """
     lower, upper = space.edges
     strata = np.argsort(generator.random((count, len(lower))), axis=0)
@@ -45,16 +41,9 @@ def spread(space: Space, count: int, generator: np.random.Generator, on_bound: f
 def offspring(
     archive: Archive, standing: Standing, settings: SurrogateSettings, generator: np.random.Generator
 ) -> Floats:
-    """Varied designs, ``settings.offspring`` times the population, shape (n, d).
+    """Vary designs, of which one at least has jumped, to ``settings.offspring`` times the population, shape (n, d).
 
-    Half of them have any two parents, which keeps the search broad, half have two neighbours on the front, which
-    refines it.
-
-    Args:
-        archive: the designs so far; at least one has jumped.
-        standing: how they stand.
-        settings: number of offspring, and the operators.
-        generator: source of all choices.
+    Half have any two parents, which keeps the search broad, half two neighbours on the front, which refines it.
     """
     front = standing.front
     parents = front if len(front) >= _PARENTS else standing.order[:_PARENTS]
@@ -93,11 +82,10 @@ def offspring(
 
 
 def small_steps(space: Space, values: Floats, count: int, generator: np.random.Generator) -> Floats:
-    """``count`` designs near each of n, shape (n, d) -> (n * count, d).
+    """Return ``count`` designs near each of n, shape (n, d) -> (n * count, d).
 
     Each step has a length of its own, from fine to coarse, and moves about half of the variables. One of d steps takes
-    another gearbox of a list: half of these the next one, half any. Steps beyond a bound end on it: many of the best
-    designs have variables on their bounds.
+    another gearbox of a list: half of these the next one, half any. Steps beyond a bound end on it.
     """
     lower, upper = space.lower, space.upper
     start = np.repeat(values, count, axis=0)
@@ -112,12 +100,7 @@ def small_steps(space: Space, values: Floats, count: int, generator: np.random.G
 
 
 def swaps(space: Space, values: Floats) -> Floats:
-    """Every other choice of one gearbox or of one motor for each of n designs, all else equal, shape (k, d).
-
-    Args:
-        space: the space; without choices, there are no swaps.
-        values: shape (n, d).
-    """
+    """Return every other choice of one gearbox or of one motor for each of n designs, all else equal, shape (k, d)."""
     found = [values[:0]]
     for column, name in enumerate(space.names):
         if name in space.gears:
@@ -137,7 +120,7 @@ def swaps(space: Space, values: Floats) -> Floats:
 
 
 def scans(space: Space, values: Floats, generator: np.random.Generator) -> Floats:
-    """Each of n designs with one variable elsewhere, all else equal, shape (n, d) -> (n * k, d); k designs of each.
+    """Return k designs for each of n with one variable elsewhere, all else equal, shape (n, d) -> (n * k, d).
 
     A number goes to both its bounds and to one place between them. A gearbox or a motor becomes any, as often.
     """
@@ -155,13 +138,10 @@ def scans(space: Space, values: Floats, generator: np.random.Generator) -> Float
 
 
 def exchanges(space: Space, values: Floats) -> Floats:
-    """Each of n designs with the lengths of its links exchanged, with its gearboxes exchanged, and with both.
+    """Return each of n designs with its links exchanged, with its gearboxes exchanged, and with both, shape (k, d).
 
-    Where the bounds differ, an exchanged value stays within its own; a gearbox becomes that of the nearest ratio.
-    Designs with several motors exchange shares of their lists of gearboxes.
-
-    Returns:
-        Shape (k, d); none if a study frees only one variable of each pair.
+    Where the bounds differ, a value stays within its own; a gearbox becomes that of the nearest ratio, or with several
+    motors that of the same share of the list. There are none if a study frees only one variable of each pair.
     """
     found = values
     for pair in _ALIKE:
@@ -175,7 +155,7 @@ def exchanges(space: Space, values: Floats) -> Floats:
 
 
 def _as_other(space: Space, name: str, other: str, column: Floats) -> Floats:
-    """Values of one variable as those of another of its kind, shape (n,)."""
+    """Return values of one variable as those of another of its kind, shape (n,)."""
     if name in space.gears and other in space.gears:
         ratios = np.array([gear.ratio for gear in space.gears[name]])[column.astype(np.intp)]
         others = np.array([gear.ratio for gear in space.gears[other]])
@@ -185,7 +165,7 @@ def _as_other(space: Space, name: str, other: str, column: Floats) -> Floats:
 
 
 def _other_choices(space: Space, start: Floats, near: Floats, generator: np.random.Generator) -> Floats:
-    """``near`` with gearboxes and motors chosen from ``start``, where each motor has its own lists, shape (n, d)."""
+    """Return ``near`` with gearboxes and motors chosen from ``start``, where each motor has its own lists."""
     dimensions = len(space.names)
     for name in space.listed:
         gear = space.gear_of(name, start).astype(np.float64)
@@ -200,7 +180,7 @@ def _other_choices(space: Space, start: Floats, near: Floats, generator: np.rand
 def _other_gears(
     start: Floats, lower: Floats, upper: Floats, dimensions: int, generator: np.random.Generator
 ) -> Floats:
-    """Steps to other whole numbers, 0 for most, of the shape of ``start``; one of ``dimensions`` is another one."""
+    """Return steps to other whole numbers, 0 for most, in the shape of ``start``; one of ``dimensions`` moves."""
     chance = generator.random(start.shape) * dimensions
     any_one = np.floor(lower + generator.random(start.shape) * (upper - lower + 1.0)) - start
     # ``np.select`` takes three times as long.

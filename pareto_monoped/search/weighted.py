@@ -1,7 +1,4 @@
-"""Search as the paper does: by CMA-ES on a weighted cost of two objectives, one run per weight.
-
-The cost that the weighted search minimises: the paper's for height and energy, a normalised sum for other pairs.
-"""
+"""Search as the paper does: by CMA-ES on a weighted cost of two objectives, one run per weight."""
 
 from collections.abc import Iterable
 from itertools import islice
@@ -16,18 +13,12 @@ from pareto_monoped.search.algorithm import Algorithm, Floats, Proposal, Scores,
 
 
 def weighted_cost(values: Floats, weight: float, corner: ReferencePoint, height_scale_j: float) -> Floats:
-    """Cost of n designs by two objectives, shape (n,); less is better.
+    """Return the cost of n designs by two objectives, shape (n, 2) -> (n,); less is better.
 
     For the paper's objectives lambda1 Kh exp(-h) + lambda2 E, with lambda2 = 1 - lambda1 (paper, section III-B, and the
     commented-out passage on C_h in its source). For any other two the sum of w f1 / s1 and (1 - w) f2 / s2, where each
     f is the measure with the sign that makes less better, and its scale s is its value at the study's reference point:
     a number of the size of its values, which does not change while the search runs. Our own choice.
-
-    Args:
-        values: of the objectives in stored units, shape (n, 2).
-        weight: of the first objective, the paper's lambda1.
-        corner: the study's reference point, which names the objectives.
-        height_scale_j: the paper's Kh, used for its objectives only.
     """
     if corner.objectives == HEIGHT_AND_ENERGY:
         return weight * height_scale_j * np.exp(-values[:, 0]) + (1.0 - weight) * values[:, 1]
@@ -39,23 +30,14 @@ def weighted_cost(values: Floats, weight: float, corner: ReferencePoint, height_
 class WeightedSearch(Algorithm):
     """Runs CMA-ES (Hansen's ``cma``) on ``weighted_cost``, for one weight after the other.
 
-    A run ends after ``iterations``, or earlier when CMA-ES detects that it has converged. To restore, the current run
-    is replayed from its history. This is exact because each run has its own random generator, and it takes a fraction
-    of a second.
+    A run ends after ``iterations``, or earlier when CMA-ES has converged. To restore, the current run is replayed from
+    its history, which is exact because each run has its own random generator.
     """
 
     def __init__(
         self, space: Space, settings: WeightedSettings, start: Floats, seed: int, corner: ReferencePoint
     ) -> None:
-        """Begin with the first weight.
-
-        Args:
-            space: the free variables and two objectives.
-            settings: weights, population and the like.
-            start: where each run starts, a point of the space, shape (d,).
-            seed: the study's.
-            corner: the study's reference point, which scales other objectives than the paper's.
-        """
+        """Begin with the first weight at ``start``, a point of the space, shape (d,)."""
         self._space = space
         self._settings = settings
         self._seed = seed
@@ -90,11 +72,7 @@ class WeightedSearch(Algorithm):
                 self._strategy = self._fresh()
 
     def cost(self, scores: Scores) -> Floats:
-        """Compute the cost of each design, shape (n,).
-
-        An infeasible design costs more than any feasible one, and more the larger its violation. CMA-ES uses only the
-        ranks.
-        """
+        """Return the cost of each design, shape (n,); infeasible ones cost more than all feasible ones."""
         weight, scale = self._settings.height_weights[self._run], self._settings.height_scale_j
         feasible = weighted_cost(scores.values, weight, self._corner, scale)
         return np.where(scores.violation > 0.0, 1e6 * scale * (1.0 + scores.violation), feasible)

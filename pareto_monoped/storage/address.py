@@ -37,18 +37,15 @@ class Server:
 
 
 def is_address(text: str) -> bool:
-    """Whether a text is the address of a server, of whatever kind, rather than the name of a file."""
+    """Return whether a text is the address of a server, of whatever kind, rather than the name of a file."""
     return _ADDRESS.fullmatch(text) is not None
 
 
 def server_of(text: str) -> Server:
-    """Return the server that an address names, ``postgresql://USER@HOST:PORT/DATABASE?schema=STUDY``.
+    """Return the server at an address of the form ``_SHAPE``; messages never have the text of a wrong one.
 
-    Besides ``schema``, everything is as libpq takes it. Passwords need not be in it: libpq looks in ``PGPASSWORD`` and
+    Besides ``schema``, everything is as libpq takes it, which also looks for passwords in ``PGPASSWORD`` and
     ``~/.pgpass``.
-
-    Raises:
-        DatabaseError: it cannot be one; the message never has the text, which may hold a password.
     """
     found = _ADDRESS.fullmatch(text)
     if found is None or found["kind"] not in _KINDS:

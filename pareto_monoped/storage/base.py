@@ -1,6 +1,6 @@
 """The base class of storages: each keeps one study, in a file of SQLite or in a schema of a PostgreSQL server.
 
-A database may come from a stranger. It is read with plain SELECTs on known tables. It holds only numbers, text and
+A database may come from a stranger. It is read with plain SELECTs on known tables and holds only numbers, text and
 JSON.
 """
 
@@ -53,14 +53,14 @@ class Storage(ABC):
 
     @abstractmethod
     def is_vacant(self) -> bool:
-        """Whether there is nothing yet."""
+        """Return whether there is nothing yet."""
 
     @abstractmethod
     def creating(self) -> "AbstractContextManager[Storage]":
         """Create the database atomically: yield the storage of a draft, which the block fills.
 
         If the block succeeds, the draft takes the study's place, which must be vacant; otherwise it is deleted. A
-        killed creation leaves the draft, and the next one deletes that. The caller holds the study's lock.
+        killed creation leaves the draft, which the next one deletes. The caller holds the study's lock.
         """
 
     @abstractmethod
@@ -91,7 +91,7 @@ class Storage(ABC):
         """Turn exceptions of the database, of SQLAlchemy and of the system into one clear error of ours."""
 
     def is_at_rest(self) -> bool:
-        """Whether the last run has left nothing beside the database that is to be merged into it."""
+        """Return whether the last run has left nothing beside the database that is to be merged into it."""
         return True
 
     @abstractmethod
@@ -100,10 +100,7 @@ class Storage(ABC):
 
 
 def error_behind(error: BaseException | None) -> BaseException | None:
-    """Return the database's error that SQLAlchemy has wrapped, which Optuna may have wrapped once more.
-
-    It is SQLAlchemy's own error if there is none behind it, and None if SQLAlchemy has no part in it.
-    """
+    """Return the database's error behind one of SQLAlchemy or Optuna; SQLAlchemy's own if alone, else None."""
     while error is not None and not type(error).__module__.startswith("sqlalchemy."):  # not imported for a name only
         error = error.__cause__
     return getattr(error, "orig", None) or error
@@ -111,10 +108,7 @@ def error_behind(error: BaseException | None) -> BaseException | None:
 
 @contextmanager
 def undamaged(place: Path | Server) -> Iterator[None]:
-    """Say that a database is damaged where its content makes the block fail.
-
-    Numbers that are text, text that is no JSON, rows that are missing: a study as this package writes it has none.
-    """
+    """Raise ``DatabaseError`` where damaged content of a database makes the block fail."""
     try:
         yield
     except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError) as error:
@@ -124,11 +118,7 @@ def undamaged(place: Path | Server) -> Iterator[None]:
 
 
 def check(connection: Connection, place: Path | Server) -> int:
-    """Check that a database is a study database of a known version, and return the version of its format.
-
-    Raises:
-        DatabaseError: not a study, or of a newer version.
-    """
+    """Check that a database is a study of a known version, and return the version of its format."""
     kinds = connection.objects()
     tables = {name for kind, name in kinds if kind == "table"}
     active = [name for kind, name in kinds if kind in ("view", "trigger")]

@@ -1,7 +1,4 @@
-"""The columns of a trial: name, storage, what it is, and where its values come from. Storage and reader read this.
-
-What a run stores in one transaction.
-"""
+"""The columns of a trial: name, storage, meaning and source of their values; what a run stores in one transaction."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -21,7 +18,7 @@ if TYPE_CHECKING:
     from pareto_monoped.definition.study import Study
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Column:
     """One column of the table ``monoped_trials`` and of ``StudyData.trials``."""
 
@@ -36,90 +33,37 @@ class Column:
 
 def _variable(index: int) -> Column:
     variable = VARIABLES[index]
-    return Column(
-        name=variable.name,
-        sql="REAL" if variable.default is None else f"REAL NOT NULL DEFAULT {DEFAULTS[variable.name]!r}",
-        dtype="float64",
-        meaning=variable.meaning,
-        values=lambda generation: generation.designs[:, index],
-    )
+    sql = "REAL" if variable.default is None else f"REAL NOT NULL DEFAULT {DEFAULTS[variable.name]!r}"
+    return Column(variable.name, sql, "float64", variable.meaning, lambda generation: generation.designs[:, index])
 
 
 def _measure(name: str, meaning: str) -> Column:
-    return Column(
-        name=name,
-        sql="REAL",
-        dtype="float64",
-        meaning=meaning,
-        values=lambda generation: generation.evaluations.of(name),
-    )
-
-
-_IDENTITY = (
-    Column(
-        name="trial",
-        sql="INTEGER PRIMARY KEY",
-        dtype="int64",
-        meaning="number of the trial, from 0",
-        values=lambda generation: range(generation.first_trial, generation.first_trial + len(generation.designs)),
-    ),
-    Column(
-        name="generation",
-        sql="INTEGER NOT NULL",
-        dtype="int64",
-        meaning="number of its generation, from 0",
-        values=lambda generation: [generation.number] * len(generation.designs),
-    ),
-    Column(
-        name="state",
-        sql="TEXT NOT NULL",
-        dtype="str",
-        meaning="feasible, infeasible (jumps, but misses a constraint) or failed (no jump)",
-        values=lambda generation: generation.judgement.state.tolist(),
-    ),
-    Column(
-        name="status",
-        sql="TEXT NOT NULL",
-        dtype="str",
-        meaning="how the jump ended, one of jump.evaluate.STATUSES",
-        values=lambda generation: generation.evaluations.status.tolist(),
-    ),
-    Column(
-        name="reason",
-        sql="TEXT NOT NULL",
-        dtype="str",
-        meaning="why it is not feasible; empty where it is",
-        values=lambda generation: generation.judgement.reason,
-    ),
-)
-_JUDGEMENT = (
-    Column(
-        name="violation",
-        sql="REAL NOT NULL",
-        dtype="float64",
-        meaning="how far the constraints are missed, as a sum of shares of their limits; 0 where all hold",
-        values=lambda generation: generation.judgement.violation,
-    ),
-    Column(
-        name="height_weight",
-        sql="REAL",
-        dtype="float64",
-        meaning="weight of the first objective in a weighted search; missing for other searches",
-        values=lambda generation: [generation.height_weight] * len(generation.designs),
-    ),
-)
+    return Column(name, "REAL", "float64", meaning, lambda generation: generation.evaluations.of(name))
 
 
 def _motor(name: str, meaning: str) -> Column:
-    return Column(
-        name=name,
-        sql="TEXT",
-        dtype="str",
-        meaning=meaning,
-        values=lambda generation: generation.motors.get(name) or [None] * len(generation.designs),
-    )
+    return Column(name, "TEXT", "str", meaning, lambda one: one.motors.get(name) or [None] * len(one.designs))
 
 
+_STATE = "feasible, infeasible (jumps, but misses a constraint) or failed (no jump)"
+_STATUS = "how the jump ended, one of jump.evaluate.STATUSES"
+_VIOLATION = "how far the constraints are missed, as a sum of shares of their limits; 0 where all hold"
+_WEIGHT = "weight of the first objective in a weighted search; missing for other searches"
+_IDENTITY = (
+    Column("trial", "INTEGER PRIMARY KEY", "int64", "number of the trial, from 0", lambda one: one.trials),
+    Column(
+        "generation", "INTEGER NOT NULL", "int64", "number of its generation, from 0", lambda one: one.same(one.number)
+    ),
+    Column("state", "TEXT NOT NULL", "str", _STATE, lambda one: one.judgement.state.tolist()),
+    Column("status", "TEXT NOT NULL", "str", _STATUS, lambda one: one.evaluations.status.tolist()),
+    Column(
+        "reason", "TEXT NOT NULL", "str", "why it is not feasible; empty where it is", lambda one: one.judgement.reason
+    ),
+)
+_JUDGEMENT = (
+    Column("violation", "REAL NOT NULL", "float64", _VIOLATION, lambda one: one.judgement.violation),
+    Column("height_weight", "REAL", "float64", _WEIGHT, lambda one: one.same(one.height_weight)),
+)
 _MOTOR = _motor("motor", "name of the motor of both joints; NULL in the database of a study with no choice of it")
 _JOINT_MOTORS = tuple(
     _motor(f"{joint}_motor", f"name of the {joint}'s motor, where it is chosen for itself; else NULL")
@@ -133,13 +77,13 @@ COLUMNS: tuple[Column, ...] = (*_IDENTITY, *_JUDGEMENT, *_VARIABLES, _MOTOR, *_M
 
 
 def columns_of(study: "Study") -> tuple[Column, ...]:
-    """The columns of a study: all, and those of the measures under uncertainty and own functions that it asks for."""
+    """Return all columns and those of the measures under uncertainty and own functions that a study asks for."""
     asked = (*study.robust_names, *study.own_names)
     return (*COLUMNS, *(_measure(name, measure(name).meaning) for name in asked))
 
 
 def listed(names: Iterable[str]) -> str:
-    """Columns of a table for SQL, in quotes because the names of measures under uncertainty have a dot."""
+    """Return columns of a table for SQL, in quotes because the names of measures under uncertainty have a dot."""
     return ", ".join(f'"{name}"' for name in names)
 
 
@@ -173,3 +117,12 @@ class Generation:
     ended: datetime
     #: Coordinate that chooses a motor -> name of each design's; empty where the study has no such choice
     motors: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    @property
+    def trials(self) -> range:
+        """Numbers of the trials."""
+        return range(self.first_trial, self.first_trial + len(self.designs))
+
+    def same(self, value: Any) -> list[Any]:
+        """Return a value for each trial."""
+        return [value] * len(self.designs)

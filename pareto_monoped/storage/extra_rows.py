@@ -1,8 +1,6 @@
-"""Tables that a study has only where something was stored in them; their rows have their place in the running hash.
+"""Tables that only some studies have: robustness per trial, sensitivity per trial and kind of factors.
 
-The stored robustness of a study: one row per trial that was simulated under uncertainty.
-
-The stored sensitivities of a study: one row per trial and per kind of factors.
+Their rows have their place in the running hash.
 """
 
 from collections.abc import Callable
@@ -48,13 +46,7 @@ def read_rows(
 ) -> dict[Any, tuple[dict[str, Any], T]]:
     """Read settings and results by key, and check them against the running hash.
 
-    Args:
-        db: the study's database.
-        table: the table.
-        make: key, result as JSON values and source for messages -> the result.
-
-    Raises:
-        DatabaseError: missing, not a study, or damaged.
+    ``make`` turns a key, the result's JSON values and a source for messages into a result.
     """
     with storage_of(db).reading() as connection:
         rows = table.rows(connection)
@@ -82,11 +74,7 @@ class Stored:
 
 
 def read_robustness(db: StudyPlace) -> dict[int, Stored]:
-    """The stored robustness of a study by trial; empty if it has none.
-
-    Raises:
-        DatabaseError: missing, not a study, or damaged.
-    """
+    """Read the stored robustness of a study by trial; empty if it has none."""
     found = read_rows(db, ROBUSTNESS, _result)
     return {int(trial): Stored(settings=settings, result=result) for trial, (settings, result) in found.items()}
 
@@ -107,16 +95,12 @@ class StoredSensitivity:
 
 
 def key_of(trial: int, about: About) -> str:
-    """The key of a row, such as "17 assumptions"."""
+    """Return the key of a row, such as "17 assumptions"."""
     return f"{trial} {about}"
 
 
 def read_sensitivity(db: StudyPlace) -> dict[tuple[int, About], StoredSensitivity]:
-    """The stored sensitivities of a study by trial and kind of factors; empty if it has none.
-
-    Raises:
-        DatabaseError: missing, not a study, or damaged.
-    """
+    """Read the stored sensitivities of a study by trial and kind of factors; empty if it has none."""
     found: dict[tuple[int, About], StoredSensitivity] = {}
     for key, (settings, result) in read_rows(db, SENSITIVITY, _sensitivity_rows_result).items():
         found[int(key.split()[0]), result.about] = StoredSensitivity(settings=settings, result=result)

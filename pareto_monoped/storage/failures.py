@@ -40,13 +40,7 @@ _AT_THE_DOOR = {
 
 
 def failure(server: Server, error: BaseException, *, open_before: bool = False) -> ParetoMonopedError:
-    """Return the error of ours for one of psycopg or SQLAlchemy.
-
-    Args:
-        server: the study.
-        error: what happened.
-        open_before: whether the connection had been open.
-    """
+    """Return the error of ours for one of psycopg or SQLAlchemy; ``open_before``: the connection had been open."""
     text = _said(error)
     start = f"study database {str(server)!r}: "
     state = getattr(error, "sqlstate", None)

@@ -1,6 +1,4 @@
-"""Studies in files of SQLite.
-
-Files are read with SQLite's defences switched on: no trusted schema, no views or triggers, no extensions.
+"""Studies in files of SQLite, read with its defences on: no trusted schema, no views or triggers, no extensions.
 
 Whoever opens a database with SQLite makes an empty file, and Optuna fills it with its tables. A reader that asks for a
 study too early therefore leaves a file that holds nothing. Such a file is filled, not replaced: the reader would go on
@@ -112,10 +110,7 @@ class FileConnection(sqlite3.Connection, Connection):
         self.require_place()
 
     def require_place(self) -> None:
-        """Check that the database and its log are the files that were opened.
-
-        A file that is deleted or replaced while it is open takes everything with it that is still written to it.
-        """
+        """Check that the database and its log are the files that were opened: writes to deleted ones would be lost."""
         # The study by the name that it was opened by: a link in this that leads elsewhere now is noticed too.
         for file, name in ((self._resolved, self.place), (self._log, self._log)):
             try:
@@ -152,7 +147,7 @@ class FileStorage(Storage):
         self.place = place
 
     def is_vacant(self) -> bool:
-        """Whether there is no file, an empty one, or one with Optuna's tables without any study."""
+        """Return whether there is no file, an empty one, or one with Optuna's tables without any study."""
         require_file_name(self.place)
         if not self.place.exists():
             return True
@@ -263,7 +258,7 @@ class FileStorage(Storage):
             raise _clear(self.place, found) from error
 
     def is_at_rest(self) -> bool:
-        """Whether the study is a single file; a kill at the very end leaves a log beside it."""
+        """Return whether the study is a single file; a kill at the very end leaves a log beside it."""
         return not any(Path(f"{self.place.resolve()}{end}").exists() for end in ("-wal", "-journal"))
 
     def optuna_storage(self, *, read_only: bool = False) -> "RDBStorage":
@@ -296,9 +291,6 @@ def roll_back(storage: FileStorage) -> None:
 
     A run changes the journal mode at its start and end, which SQLite does under such a journal. A read-only connection
     cannot roll back, and would call the database read-only for ever.
-
-    Raises:
-        DatabaseError: the folder cannot be written to.
     """
     path = storage.place
     journal = Path(f"{path.resolve()}-journal")
@@ -330,7 +322,7 @@ def _folder_writable(path: Path) -> bool:
 
 
 def _is_bare(connection: sqlite3.Connection) -> bool:
-    """Whether a database holds at most Optuna's tables, without any study."""
+    """Return whether a database holds at most Optuna's tables, without any study."""
     objects = connection.execute("SELECT type, name FROM sqlite_master WHERE type != 'index'").fetchall()
     tables = {name for kind, name in objects if kind == "table"}
     if len(objects) > len(tables) or not tables <= _OPTUNA:

@@ -1,7 +1,4 @@
-"""Read the front that a study keeps, without its other trials.
-
-Count the trials that an Optuna user has added to a study, which are ignored here, and warn of them.
-"""
+"""Read the front that a study keeps, without its other trials, and count and name the trials of Optuna users."""
 
 from dataclasses import dataclass
 
@@ -49,30 +46,16 @@ class StudyFront:
 
 
 def read_front(db: StudyPlace) -> StudyFront:
-    """Read the front that a study keeps, and check it; that of a study of format 1 is made from its trials.
-
-    Raises:
-        DatabaseError: missing, not a study, damaged, or of a newer version.
-    """
+    """Read the front that a study keeps, and check it; that of a study of format 1 is made from its trials."""
     with undamaged(db):
-        return _read_front(db)
-
-
-def _read_front(db: StudyPlace) -> StudyFront:
-    with storage_of(db).reading() as connection:
-        foreign = foreign_count(connection)
-        if has_seals(connection):
-            return _kept(connection, db, foreign)
-    data = read_study(db)
-    return StudyFront(
-        db=db,
-        study=data.study,
-        meta=data.meta,
-        rows=data.front(),
-        used=in_use(data.trials),
-        foreign=foreign,
-        sealed=data.sealed,
-    )
+        with storage_of(db).reading() as connection:
+            foreign = foreign_count(connection)
+            if has_seals(connection):
+                return _kept(connection, db, foreign)
+        data = read_study(db)
+        rows, used = data.front(), in_use(data.trials)
+        known = {"study": data.study, "meta": data.meta, "rows": rows, "used": used, "sealed": data.sealed}
+        return StudyFront(db=db, foreign=foreign, **known)
 
 
 def _kept(connection: Connection, db: StudyPlace, foreign: int) -> StudyFront:

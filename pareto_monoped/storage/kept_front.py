@@ -1,7 +1,4 @@
-"""The front and the counts of a study as its database keeps them, so that nobody needs to read all trials for them.
-
-The trials of the front that a study keeps, in a moment: for a shell that completes their numbers.
-"""
+"""The front and the counts of a study as its database keeps them, so that nobody needs to read all trials for them."""
 
 import json
 from collections.abc import Collection, Mapping, Sequence
@@ -104,7 +101,7 @@ class KeptFront:
         self._front.add(np.array([row[0] for row in rows], dtype=np.int64), values)
 
     def store(self, connection: Connection) -> tuple[Any, ...]:
-        """Replace the kept row; returns it."""
+        """Replace the kept row, and return it."""
         numbers = json.dumps(self.numbers, separators=(",", ":"))
         row = (1, numbers, *self.counts.values(), json.dumps(sorted(self.used)))
         connection.replace("monoped_front", [row])
@@ -132,14 +129,9 @@ def rows_of(connection: Connection, names: Sequence[str], trials: Sequence[int])
 
 
 def front_trials(db: StudyPlace) -> dict[int, str]:
-    """Number of each trial of the kept front -> its objectives in words, by the first objective.
+    """Read each trial of the kept front -> its objectives in words, by the first objective, for a shell.
 
-    They are not checked against the study's seals, which takes longer than a key press: good for choosing a trial, and
-    for no more.
-
-    Raises:
-        DatabaseError: missing, not a study, damaged, of a newer version, or of format 1, which kept no front.
-        ServerError: the server is away.
+    They are not checked against the study's seals, which takes longer than a key press. Format 1 kept no front.
     """
     with storage_of(db).reading() as connection:
         (study,) = connection.execute("SELECT value FROM monoped_meta WHERE key = 'study'").fetchone()

@@ -21,11 +21,7 @@ def inaccessible(path: Path, error: OSError) -> DatabaseError | DiskError:
 
 
 def require_file_name(path: Path) -> None:
-    """Refuse what cannot be the name of a database.
-
-    Raises:
-        DatabaseError: a folder, a device or pipe, or a name that the system does not take.
-    """
+    """Refuse what cannot be the name of a database: a folder, a device or pipe, or what the system does not take."""
     try:
         mode = path.stat().st_mode
     except FileNotFoundError:
@@ -49,11 +45,7 @@ class Lock(StudyLock):
         self.settled = before == 0
 
     def confirm(self, links: int) -> None:
-        """Check that a study of so many links of the running hash has all that was safe before.
-
-        Raises:
-            LostTrialsError: it has not.
-        """
+        """Raise ``LostTrialsError`` if a study of so many links of the running hash lacks what was safe before."""
         if links < self._before:
             raise LostTrialsError(
                 f"study database {str(self._db)!r}: lacks the last {self._before - links} transactions of a killed "

@@ -17,7 +17,7 @@ Number = StrictFloat | None
 
 
 def motor_keys(count: int) -> tuple[str, ...]:
-    """Keys of a study's motors in ``StudyMeta.contents`` and ``files``: ``motor``, or ``motor_1``, ``motor_2``, ..."""
+    """Return the motors' keys in ``StudyMeta.contents`` and ``files``: ``motor``, or ``motor_1``, ``motor_2``, ..."""
     return ("motor",) if count == 1 else tuple(f"motor_{number}" for number in range(1, count + 1))
 
 
@@ -43,16 +43,12 @@ class StudyMeta:
     stop_reason: str | None  #: why it ended; None while it runs or after it was killed
 
     def as_rows(self) -> list[tuple[str, str]]:
-        """Key and JSON text of each field, as stored."""
+        """Return key and JSON text of each field, as stored."""
         return [(field.name, strict_json(getattr(self, field.name))) for field in fields(self)]
 
 
 def meta_of_rows(rows: Iterable[tuple[Any, Any]], db: StudyPlace) -> StudyMeta:
-    """The record from its stored rows; rows with other keys are ignored.
-
-    Raises:
-        DatabaseError: a value is missing or of the wrong type.
-    """
+    """Return the record from its stored rows; raise ``DatabaseError`` for a missing value or one of the wrong type."""
     try:
         values = {str(key): parsed_json(value) for key, value in rows}
         return checked(StudyMeta, values, source="monoped_meta", error=DatabaseError)
@@ -61,9 +57,5 @@ def meta_of_rows(rows: Iterable[tuple[Any, Any]], db: StudyPlace) -> StudyMeta:
 
 
 def strict_json(value: Any) -> str:
-    """JSON that any reader takes.
-
-    Raises:
-        ValueError: NaN or infinity in ``value``.
-    """
+    """Return JSON that any reader takes; raise ``ValueError`` for NaN or infinity."""
     return json.dumps(value, allow_nan=False)

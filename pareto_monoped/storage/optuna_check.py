@@ -1,7 +1,4 @@
-"""Whether Optuna's tables say the same as ours, and which of Optuna's trials are not of this package.
-
-Drop from a study what an Optuna user has added to it.
-"""
+"""Compare Optuna's tables with ours; find and drop the trials that an Optuna user has added to a study."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -21,8 +18,8 @@ from pareto_monoped.storage.store import Store
 def optuna_numbers(connection: Connection, count: int, seals: Seals | None) -> list[int]:
     """Return Optuna's numbers of a study's ``count`` trials; they are not ours where an Optuna user has added trials.
 
-    Trials that were written directly are numbered on from the first of their generation, which the running hash has
-    where it is another one. Those that Optuna has written for us carry our number.
+    Trials written directly are numbered on from the first of their generation, which the running hash has where it
+    differs. Those that Optuna has written for us carry our number.
     """
     numbers = np.arange(count)
     if seals is not None:
@@ -46,7 +43,7 @@ def foreign_trials(connection: Connection, count: int, seals: Seals | None) -> t
 
 
 def optuna_findings(connection: Connection, data: StudyData, seals: Seals | None) -> list[str]:
-    """What Optuna's tables say otherwise than ours; one line per kind, with the first trial that has it."""
+    """Return what Optuna's tables say otherwise than ours; one line per kind, with the first trial that has it."""
     numbers = optuna_numbers(connection, len(data.trials), seals)
     findings = list(_study_findings(connection, data.study))
     if not findings and seals is not None:
@@ -69,7 +66,7 @@ def _study_findings(connection: Connection, study: Study) -> Iterator[str]:
 
 
 def _attribute_findings(connection: Connection, sealed: Mapping[str, str]) -> Iterator[str]:
-    """What Optuna's tables say otherwise of the study itself than when it was created; additions are a user's right."""
+    """Yield what Optuna's tables say otherwise of the study itself than when it was created, but for additions."""
     found = study_digests(connection)
     different = [name for name, digest in sealed.items() if found.get(name) != digest]
     versions = ("alembic_version", "version_info")
@@ -122,7 +119,7 @@ def _different(
 
 
 def sealed_generations(seals: Seals) -> dict[int, int]:
-    """First trial -> number of trials of all generations whose rows in Optuna's tables have a digest."""
+    """Return first trial -> number of trials of all generations whose rows in Optuna's tables have a digest."""
     digests = {int(first): digest for first, digest in seals.written.get("optuna", {}).items()}
     firsts = sorted(digests)
     ends = zip(firsts, [*firsts[1:], seals.trials], strict=True)
@@ -141,13 +138,9 @@ def _digest_findings(connection: Connection, numbers: Sequence[int], seals: Seal
 
 
 def repair(db: StudyPlace) -> tuple[int, ...]:
-    """Drop trials that are not of this package from Optuna's tables, and number Optuna's others from 0 on.
+    """Drop foreign trials from Optuna's tables, number the others from 0 on, and return the dropped numbers.
 
-    Returns:
-        Optuna's numbers of the trials that were dropped.
-
-    Raises:
-        DatabaseError: not a study, in use, or damaged: then nothing is changed.
+    Nothing is changed in a study that is in use or damaged.
     """
     read_study(db)
     with storage_of(db).locked():

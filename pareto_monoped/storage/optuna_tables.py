@@ -60,12 +60,7 @@ def drop_trials(connection: Connection, foreign: Sequence[int]) -> None:
 
 
 def stored_digest(connection: Connection, ids: Collection[int]) -> str:
-    """Compute the digest that ``OptunaTables.insert`` gave of trials from what is stored of them now.
-
-    Args:
-        connection: reads the database.
-        ids: keys of the trials in Optuna's tables, of a whole generation.
-    """
+    """Compute the digest that ``OptunaTables.insert`` gave of a whole generation from what is stored of it now."""
     rows = []
     for table, columns in _WRITTEN.items():
         found = connection.execute(
@@ -103,13 +98,7 @@ def _digest(rows: list[list[Any]]) -> str:
 
 
 def create_tables(draft: Storage, study: Study, attributes: Mapping[str, Any]) -> None:
-    """Let Optuna create a new database with an empty study.
-
-    Args:
-        draft: keeps it; must not exist.
-        study: gives the name.
-        attributes: the study's user attributes, JSON values.
-    """
+    """Let Optuna create a new database with an empty study and its user attributes, JSON values."""
     with warnings.catch_warnings():
         # In a notebook without ipywidgets, Optuna's progress bar warns of itself; it is not used here.
         warnings.filterwarnings("ignore", message="IProgress not found")
@@ -167,11 +156,9 @@ class OptunaTables:
             )
 
     def insert(self, connection: Connection, generation: Generation) -> dict[str, dict[str, str]]:
-        """Insert a generation's rows within the transaction that the connection has open.
+        """Insert a generation's rows within the open transaction, and return what the running hash has of them.
 
-        Returns:
-            What the running hash has of them: their digest, and Optuna's number of the first trial where it is not
-            ours, because an Optuna user has added trials.
+        That is their digest, and Optuna's number of the first trial where it is not ours, because of an Optuna user.
         """
         rows, first = self._rows(connection, generation)
         for table, columns in _WRITTEN.items():
@@ -231,7 +218,7 @@ class OptunaTables:
         ]
 
     def _parameters(self, generation: Generation, k: int) -> dict[str, Any]:
-        """Free variables of trial ``k``; its motors by name."""
+        """Return the free variables of trial ``k``, and its motors by name."""
         row = generation.designs[k].tolist()
         values: dict[str, Any] = {NAMES[i]: row[i] for i in self._free}
         return values | {choice: generation.motors[choice][k] for choice in self._motors}
@@ -239,8 +226,8 @@ class OptunaTables:
     def add_by_optuna(self, generation: Generation) -> None:
         """Let Optuna write the trials into a schema that is not known here.
 
-        Optuna commits each trial on its own, so a kill may leave trials that our checkpoint does not know yet. After a
-        resume the same trials come again; those that are already there are skipped.
+        Optuna commits each trial on its own, so a kill may leave trials that our checkpoint does not know yet. When
+        they come again after a resume, they are skipped.
         """
         import optuna
 
@@ -276,12 +263,12 @@ class OptunaTables:
 
 
 def _json_rows(rows: list[list[float]]) -> list[str]:
-    """JSON text of each of n lists of numbers, made at once, which is many times as fast."""
+    """Return the JSON text of each of n lists of numbers, made at once, which is many times as fast."""
     return [f"[{text}]" for text in json.dumps(rows)[2:-2].split("], [")]
 
 
 def _attributes(generation: Generation, k: int) -> dict[str, Any]:
-    """What Optuna's dashboard shows of trial ``k`` besides its values."""
+    """Return what Optuna's dashboard shows of trial ``k`` besides its values."""
     attributes: dict[str, Any] = {}
     if generation.judgement.reason[k]:
         attributes["status"] = str(generation.evaluations.status[k])

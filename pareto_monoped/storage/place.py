@@ -11,12 +11,7 @@ StudyPlace = Path | Server
 
 
 def place_of(text: str) -> StudyPlace:
-    """Return the place that a user names: the address of a server, else a file.
-
-    Raises:
-        DatabaseError: an address that cannot be one of a study.
-        InputError: the package that speaks to servers is not installed.
-    """
+    """Return the place that a user names: the address of a server, which needs an extra, else a file."""
     if not is_address(text):
         return Path(text)
     server = server_of(text)

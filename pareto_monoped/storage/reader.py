@@ -1,8 +1,7 @@
-"""Read a study database: everything that report, CAD and command line need, by plain SELECTs.
+"""Read a study database by plain SELECTs: everything that report, CAD and command line need.
 
-Stored rows of trials as a data frame: every column there is, each of its type, with the names of the motors.
-
-Measures that databases of earlier versions lack and that follow exactly from what they have.
+Stored rows become a data frame with every column there is, the names of the motors, and measures that follow exactly
+from those that databases of earlier versions have.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -42,16 +41,7 @@ _BLOCK = 20_000
 
 
 def trial_frame(names: list[str], rows: Iterable[tuple[Any, ...]], db: StudyPlace) -> pd.DataFrame:
-    """Trials as read from the database.
-
-    Args:
-        names: of the columns that were read.
-        rows: values of these columns, one row per trial, read block by block.
-        db: the database, for messages.
-
-    Raises:
-        DatabaseError: a value is not of its column's type, or a required column is missing.
-    """
+    """Return trials as a data frame from column names and rows, which are read block by block; refuse damaged ones."""
     left = iter(rows)
     try:
         frames = [_frame(names, list(islice(left, _BLOCK)))]
@@ -85,13 +75,10 @@ def _typed(values: tuple[Any, ...], dtype: str) -> Any:
 
 
 def with_motors(trials: pd.DataFrame, study: Study, meta: StudyMeta, db: StudyPlace) -> pd.DataFrame:
-    """The trials with the names of each one's motors, which the database leaves out where all have the same.
+    """Return the trials with the names of each one's motors, which the database leaves out where all have the same.
 
     The column ``motor`` always says what motors a trial has; ``hip_motor`` and ``knee_motor`` stand only where the
-    study names them.
-
-    Raises:
-        DatabaseError: a trial has a motor that the study does not name.
+    study names them. A trial with another motor raises ``DatabaseError``.
     """
     contents = [meta.contents.get(key, {}) for key in motor_keys(len(study.motors))]
     known = {
@@ -120,7 +107,7 @@ def with_motors(trials: pd.DataFrame, study: Study, meta: StudyMeta, db: StudyPl
 
 
 def with_agility(trials: pd.DataFrame) -> pd.DataFrame:
-    """The trials with ``agility_m_per_s`` wherever height and time of the apex are known.
+    """Return the trials with ``agility_m_per_s`` wherever height and time of the apex are known.
 
     It is the same division as in ``jump.evaluate``, so a filled value equals a stored one to the last bit. The running
     hash is over what is stored: check it before.
@@ -170,11 +157,7 @@ class StudyData:
 
     @cached_property
     def motors(self) -> "tuple[Motor, ...]":
-        """The motors that the study simulates with, as stored: the user's files may be gone or changed.
-
-        Raises:
-            DatabaseError: the stored values are damaged.
-        """
+        """The motors that the study simulates with, as stored: the user's files may be gone or changed."""
         from pareto_monoped.actuator.motors import stored_motor
 
         contents = [self.meta.contents.get(key, {}) for key in motor_keys(len(self.study.motors))]
@@ -193,11 +176,7 @@ class StudyData:
 
     @cached_property
     def calibration(self) -> "Calibration":
-        """The calibration that the study simulates with, as stored.
-
-        Raises:
-            DatabaseError: the stored values are damaged.
-        """
+        """The calibration that the study simulates with, as stored."""
         from pareto_monoped.jump.calibration import calibration_of
 
         return calibration_of(self.meta.contents.get("calibration", {}), source=self._source, error=DatabaseError)
@@ -272,10 +251,8 @@ class StudyData:
     def front(self, include_ill_conditioned: bool = False, objectives: Objectives | None = None) -> pd.DataFrame:
         """Return the non-dominated feasible trials by the first objective, from its least value to its greatest.
 
-        Args:
-            objectives: other measures than the study's own, under which trials dominate each other.
-            include_ill_conditioned: whether trials that failed their audit may be on the front. Without them, trials
-                that they dominate may enter.
+        Trials dominate each other under the study's own objectives unless others are given. Without ill-conditioned
+        trials, which failed their audit, trials that those dominate may enter.
         """
         eligible = (self.trials["state"] == "feasible").to_numpy()
         if not include_ill_conditioned:
@@ -292,19 +269,15 @@ def read_study(db: StudyPlace) -> StudyData:
         DatabaseError: missing, not a study, damaged, or of a newer version.
     """
     with undamaged(db):
-        return _read_study(db)
-
-
-def _read_study(db: StudyPlace) -> StudyData:
-    with storage_of(db).reading() as connection:
-        sealed = has_seals(connection)
-        rows = {table: connection.execute(sql).fetchall() for table, sql in ROWS.items() if sealed or table != "front"}
-        cursor = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
-        trials = trial_frame(connection.columns("monoped_trials"), cursor, db)
-        seals = read_seals(connection, db) if sealed else None
-    meta = meta_of_rows(rows["meta"], db)
-    study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
-    try:
+        with storage_of(db).reading() as connection:
+            sealed = has_seals(connection)
+            tables = [table for table in ROWS if sealed or table != "front"]
+            rows = {table: connection.execute(ROWS[table]).fetchall() for table in tables}
+            cursor = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
+            trials = trial_frame(connection.columns("monoped_trials"), cursor, db)
+            seals = read_seals(connection, db) if sealed else None
+        meta = meta_of_rows(rows["meta"], db)
+        study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
         _, generation, evaluations, state = rows["checkpoint"][0]
         checkpoint = Checkpoint(generation=int(generation), evaluations=int(evaluations), state=parsed_json(state))
         audits = [
@@ -314,29 +287,24 @@ def _read_study(db: StudyPlace) -> StudyData:
         history = pd.DataFrame(rows["history"], columns=list(_HISTORY)).astype(_HISTORY)
         if not np.isfinite(history.to_numpy(dtype=np.float64)).all():
             raise ValueError("a hypervolume or time of its history is not finite")
-    except (IndexError, KeyError, TypeError, ValueError, RecursionError) as error:
-        raise DatabaseError(
-            f"study database {str(db)!r}: is damaged ({type(error).__name__}: {error}); restore a copy"
-        ) from None
-    named = with_agility(with_motors(trials, study, meta, db))
-    if seals is not None and (findings := _seal_findings(seals, trials, rows)):
-        raise damaged(db, findings)
-    links = 0 if seals is None else seals.links
-    return StudyData(
-        db=db,
-        study=study,
-        meta=meta,
-        trials=named,
-        history=history,
-        audits=pd.DataFrame(audits) if audits else pd.DataFrame({"trial": [], "well_conditioned": []}),
-        checkpoint=checkpoint,
-        sealed=sealed,
-        links=links,
-    )
+        named = with_agility(with_motors(trials, study, meta, db))
+        if seals is not None and (findings := _seal_findings(seals, trials, rows)):
+            raise damaged(db, findings)
+        return StudyData(
+            db=db,
+            study=study,
+            meta=meta,
+            trials=named,
+            history=history,
+            audits=pd.DataFrame(audits) if audits else pd.DataFrame({"trial": [], "well_conditioned": []}),
+            checkpoint=checkpoint,
+            sealed=sealed,
+            links=0 if seals is None else seals.links,
+        )
 
 
 def _seal_findings(seals: Seals, trials: pd.DataFrame, rows: Mapping[str, Sequence[Sequence[Any]]]) -> list[str]:
-    """What does not match the running hash of a study of which everything was read; ``rows`` as by ``seals.ROWS``."""
+    """Return what does not match the running hash of a whole study; ``rows`` as by ``seals.ROWS``."""
     numbers = trials["trial"].to_numpy()
     findings = seals.trial_findings({name: trials[name].to_numpy() for name in trials}, numbers)
     if len(numbers) < seals.trials:

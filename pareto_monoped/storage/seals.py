@@ -70,12 +70,7 @@ def row_digest(values: Sequence[Any]) -> str:
 
 
 def trial_digests(names: Sequence[str], values: Mapping[str, Any]) -> list[str]:
-    """Return digests of trials, the same for trials in memory and as read again.
-
-    Args:
-        names: of the columns to digest.
-        values: column -> its values, one per trial; None and NaN are the same, and so are None and an empty text.
-    """
+    """Return digests of trials, the same in memory and as read again; None is the same as NaN and as empty text."""
     numbers = [name for name in names if name not in _TEXTS]
     # SQLite keeps neither the sign of zero nor the payload of a NaN.
     matrix = np.array([np.asarray(values[name], dtype=np.float64) for name in numbers]).T + 0.0
@@ -108,14 +103,7 @@ class Sealer:
         self.links = 0
 
     def add(self, written: Written, first: int = 0, names: Sequence[str] = (), values: Any = None) -> None:
-        """Add a link; ``links`` then counts it.
-
-        Args:
-            written: digests of the rows written into other tables than that of the trials.
-            first: number of the first new trial.
-            names: columns of the new trials, as for ``trial_digests``; none without new trials.
-            values: their values.
-        """
+        """Add a link over the digests ``written`` into other tables and the new trials from number ``first`` on."""
         last = self._connection.execute("SELECT link, hash FROM monoped_seals ORDER BY link DESC LIMIT 1").fetchone()
         link, previous = (last[0] + 1, last[1]) if last else (0, _BEFORE_ALL)
         columns = trials = ""
@@ -149,7 +137,7 @@ class Seals:
         return sum(len(digests) for _, _, digests in self.parts) // _DIGITS
 
     def trial_findings(self, values: Mapping[str, Any], numbers: Sequence[int]) -> list[str]:
-        """What does not match among some trials, ascending by number; ``values`` has their columns."""
+        """Return what does not match among some trials, ascending by number; ``values`` has their columns."""
         findings = []
         places = np.asarray(numbers, dtype=np.int64)
         known = np.zeros(len(places), dtype=bool)
@@ -173,7 +161,7 @@ class Seals:
         return findings + [f"trial {number} has no hash" for number in places[~known]]
 
     def row_findings(self, table: str, rows: Iterable[Sequence[Any]]) -> list[str]:
-        """What does not match among all rows of a table of ``ROWS``, as they are read there."""
+        """Return what does not match among all rows of a table of ``ROWS``, as they are read there."""
         sealed = self.written.get(table, {})
         found = row_digests(rows)
         findings = [
@@ -197,17 +185,13 @@ def _not_default(values: Mapping[str, Any], names: Iterable[str], count: int) ->
 
 
 def has_seals(connection: Connection) -> bool:
-    """Whether a study has a running hash; studies of versions up to 0.2.0 have none until they go on."""
+    """Return whether a study has a running hash; studies of versions up to 0.2.0 have none until they go on."""
     row = connection.execute("SELECT value FROM monoped_meta WHERE key = 'format'").fetchone()
     return row is not None and row[0] != "1"
 
 
 def read_seals(connection: Connection, db: StudyPlace) -> Seals:
-    """Read the chain and check that its links follow from each other.
-
-    Raises:
-        DatabaseError: they do not.
-    """
+    """Read the chain, and raise ``DatabaseError`` unless its links follow from each other."""
     parts: list[tuple[int, tuple[str, ...], list[str]]] = []
     names: tuple[str, ...] = ()
     written: dict[str, dict[str, str]] = {}

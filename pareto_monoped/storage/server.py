@@ -1,7 +1,4 @@
-"""Studies in schemas of a PostgreSQL server, reached through SQLAlchemy with the driver psycopg.
-
-psycopg is an extra: nothing here is imported before the address of a server is used.
-"""
+"""Studies in schemas of a PostgreSQL server, reached through SQLAlchemy with psycopg, an extra imported when needed."""
 
 import hashlib
 import os
@@ -108,10 +105,7 @@ class _Date(Loader):
 
 
 def _opened(server: Server, *, read_only: bool = False) -> "psycopg.Connection[Any]":
-    """Open a session for SQLAlchemy, in which the study's schema is the only one.
-
-    A schema that does not exist makes no error before a table is asked for.
-    """
+    """Open a session for SQLAlchemy in the study's schema; a missing one raises only when a table is asked for."""
     # Who holds a study is told by this name; 63 characters are kept of it.
     name = f"pareto-monoped {os.getpid()}@{socket.gethostname()}"[:63]
     try:
@@ -241,7 +235,7 @@ class ServerStorage(Storage):
         return self.place.of_schema(self.place.schema or schema_for(study))
 
     def is_vacant(self) -> bool:
-        """Whether the schema is missing, or has no tables yet."""
+        """Return whether the schema is missing, or has no tables yet."""
         with self.translated(), closing(ServerConnection(self.place)) as connection:
             return _is_empty(connection, self.place.schema)
 

@@ -1,7 +1,4 @@
-"""Progress and settings of a study.
-
-What a study says of itself without its trials being read: settings, counts, front and hypervolume.
-"""
+"""What a study says of itself without its trials being read: progress, settings, counts, front and hypervolume."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -40,11 +37,7 @@ class Summary:
 
 
 def read_summary(db: StudyPlace) -> Summary:
-    """Read the summary of a study, from its kept front if it has one; the checkpoint is never read.
-
-    Raises:
-        DatabaseError: missing, not a study, damaged, or of a newer version.
-    """
+    """Read the summary of a study, from its kept front if it has one; the checkpoint is never read."""
     with storage_of(db).reading() as connection:
         sealed = has_seals(connection)
         meta = meta_of_rows(connection.execute("SELECT key, value FROM monoped_meta").fetchall(), db)
@@ -94,11 +87,7 @@ def _computed(connection: Connection, db: StudyPlace) -> tuple[dict[str, int], l
 
 
 def status(db: StudyPlace) -> dict[str, Any]:
-    """Return progress and settings of a study as JSON values.
-
-    Raises:
-        DatabaseError: not a study, damaged, or of a newer version.
-    """
+    """Return progress and settings of a study as JSON values."""
     data = read_summary(db)
     objectives, done, seconds = data.study.objectives, sum(data.counts.values()), data.seconds
     high = data.energies_j[data.heights_m >= HEADLINE_HEIGHT_M]

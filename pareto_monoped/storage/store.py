@@ -47,19 +47,7 @@ _OUR_TABLES += SEALS + FRONT
 
 
 def create_database(path: StudyPlace, study: Study, meta: StudyMeta, state: Mapping[str, Any]) -> None:
-    """Create a study database without trials; after an error there is none.
-
-    Args:
-        path: its place, which must be vacant. The caller holds its lock.
-        study: the definition.
-        meta: everything else that is known about the study.
-        state: state of the algorithm before its first ``ask``.
-
-    Raises:
-        DatabaseError: it cannot be written.
-        OutputError: the folder cannot be written to.
-        ServerError: the server is away.
-    """
+    """Create a study without trials at a vacant place whose lock is held, with an algorithm's first ``state``."""
     columns = ", ".join(f'"{column.name}" {column.sql}' for column in columns_of(study))
     with storage_of(path).creating() as draft:
         create_tables(draft, study, {"study": meta.study, "versions": meta.versions, "hash": meta.hash})
@@ -85,18 +73,7 @@ class Store:
         known_schemas: Sequence[str] = KNOWN_SCHEMAS,
         lock: StudyLock | None = None,
     ) -> None:
-        """Open an existing study for writing.
-
-        Args:
-            path: the database.
-            study: its definition.
-            coordinates: what is searched; every free variable within its bounds if None.
-            known_schemas: revisions of Optuna's schema that are written directly.
-            lock: is told what is safe.
-
-        Raises:
-            DatabaseError: not a study, damaged, read-only, or of a newer version.
-        """
+        """Open an existing study for writing; ``lock`` is told what is safe."""
         self.path = path
         self._objectives, self._columns = study.objectives, columns_of(study)
         self._lock = lock
@@ -213,12 +190,10 @@ class Store:
             return foreign_count(self._connection)
 
     def drop_foreign(self, numbers: Sequence[int], generations: Mapping[int, int]) -> None:
-        """Delete trials of an Optuna user.
+        """Delete trials of an Optuna user, by Optuna's ``numbers``.
 
-        Args:
-            numbers: Optuna's numbers of these trials.
-            generations: first trial -> number of trials of everything that the running hash has a digest of in Optuna's
-                tables; it gets new ones, because Optuna's numbers change.
+        ``generations`` has the first trial -> number of trials of everything that the running hash has a digest of in
+        Optuna's tables; it gets new ones, because Optuna's numbers change.
         """
         with self._writing():
             drop_trials(self._connection, numbers)
@@ -234,11 +209,7 @@ class Store:
             )
 
     def add(self, generation: Generation) -> None:
-        """Store a generation. When this returns, its trials are safe.
-
-        Raises:
-            DatabaseError: the disk is full, or the file cannot be written.
-        """
+        """Store a generation. When this returns, its trials are safe."""
         if not self._direct:
             with self._storage.translated():
                 self._optuna.add_by_optuna(generation)

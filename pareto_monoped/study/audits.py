@@ -1,7 +1,6 @@
 """Audits of a study's front: whether each point is a property of its design or an accident of the simulation."""
 
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import Executor
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +9,6 @@ from numpy.typing import NDArray
 
 from pareto_monoped.actuator.ratiomap import JointMaps
 from pareto_monoped.design import NAMES
-from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.storage.place import StudyPlace
 from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.storage.store import Store
@@ -26,10 +24,11 @@ _SCREENED, _AUDITED = 256, 64
 def audit_front(db: StudyPlace, store: Store, simulator: Simulator, notify: Callable[[str], None]) -> None:
     """Audit every design on the front that has no audit yet, and store the audits.
 
-    A design that fails its audit leaves the front, and designs that it dominated may enter. The audit therefore
-    repeats until every design on the front has passed. For most designs one coarse jump shows that they pass
-    (``jump.screen``). The others have a brief audit: ``simulate --audit`` makes the full one.
+    A design that fails its audit leaves the front, and designs that it dominated may enter, so the audit repeats until
+    every design on the front has passed. For most designs one coarse jump shows that they pass (``jump.screen``). The
+    others have a brief audit: ``simulate --audit`` makes the full one.
     """
+    from pareto_monoped.jump.audit import ONLY_IN_FULL, audit
     from pareto_monoped.jump.screen import screened
 
     calibration, workers, executor = simulator.calibration, simulator.evaluator.workers, simulator.evaluator.executor
@@ -47,25 +46,13 @@ def audit_front(db: StudyPlace, store: Store, simulator: Simulator, notify: Call
             _store(store, rows[clear], np.ones(clear.sum(), dtype=bool), columns | {"reason": np.full(clear.sum(), "")})
             unclear = rows[~clear]
             for first in range(0, len(unclear), _AUDITED):
-                _audit(store, unclear.iloc[first : first + _AUDITED], kit, calibration, workers, executor)
-
-
-def _audit(
-    store: Store,
-    rows: pd.DataFrame,
-    kit: JointMaps,
-    calibration: Calibration,
-    workers: int,
-    executor: Executor | None,
-) -> None:
-    """Audit trials briefly, and store what was found."""
-    from pareto_monoped.jump.audit import ONLY_IN_FULL, audit
-
-    known = _known(rows)
-    audits = audit(_designs(rows), kit, calibration, workers=workers, executor=executor, known=known, brief=True)
-    columns = {name: values for name, values in audits.as_columns().items() if name not in ONLY_IN_FULL}
-    good = columns.pop("well_conditioned")
-    _store(store, rows, good, columns)
+                part = unclear.iloc[first : first + _AUDITED]
+                known, designs = _known(part), _designs(part)
+                audits = audit(
+                    designs, kit, calibration, workers=workers, executor=executor, known=known, brief=True
+                ).as_columns()
+                good = audits.pop("well_conditioned")
+                _store(store, part, good, {name: audits[name] for name in audits if name not in ONLY_IN_FULL})
 
 
 def _designs(rows: pd.DataFrame) -> NDArray[np.float64]:
@@ -74,7 +61,7 @@ def _designs(rows: pd.DataFrame) -> NDArray[np.float64]:
 
 
 def _known(rows: pd.DataFrame) -> "Jumps":
-    """The jumps of trials, which need not be simulated again."""
+    """Return the jumps of trials, which need not be simulated again."""
     from pareto_monoped.jump.audit import Jumps
 
     return Jumps(
@@ -99,7 +86,7 @@ def _store(
 
 
 def _chunks(data: StudyData, trials: pd.DataFrame) -> Iterator[tuple[JointMaps, pd.DataFrame]]:
-    """Trials that are screened together, all with the same motors, and the gearboxes of these motors."""
+    """Yield trials that are screened together, all with the same motors, and the gearboxes of these motors."""
     for kit, places in data.kit_rows(trials):
         for first in range(0, len(places), _SCREENED):
             yield kit, trials.iloc[places[first : first + _SCREENED]]

@@ -1,8 +1,6 @@
 """A study's jumps as a function for optimisers outside: points of its search space in, objectives and constraints out.
 
-Nothing is stored. ``pymoo_problem`` and ``optuna_objective`` dress it for these libraries.
-
-A study as an objective function of Optuna, for samplers and storages that this package does not use.
+Nothing is stored. ``pymoo_problem`` dresses it for pymoo, ``OptunaObjective`` for Optuna.
 """
 
 from collections.abc import Mapping, Sequence
@@ -41,19 +39,12 @@ class Judged:
 class JumpFunction:
     """Points of a study's search space to their objectives and constraints.
 
-    Args:
-        study: what is varied, simulated, wanted and allowed; its algorithm, budget and seed play no part.
-        objectives: own objectives besides the study's; less is better.
-        constraints: own constraints besides the study's; they hold at <= 0.
-        workers: threads that simulate.
+    Own objectives are minimised, and own constraints hold at <= 0; both come after the study's. The study's algorithm,
+    budget and seed play no part.
 
     Raises:
         MotorError, CalibrationError: an unknown name or an unusable file.
         StudyError: no study, or no function.
-
-    Attributes:
-        space: what is searched. Gearboxes and motors are whole numbers, positions in their lists.
-        names: of the objectives, first the study's, then the own ones.
     """
 
     def __init__(
@@ -81,8 +72,8 @@ class JumpFunction:
         self._coordinates = simulator.coordinates(study)
         self._own = tuple(own)
         self._own_limits = tuple(own_limits)
-        self.space: Space = self._coordinates.space
-        self.names = (*study.objectives.names, *map(name_of, self._own))
+        self.space: Space = self._coordinates.space  #: what is searched; gearboxes and motors by their position
+        self.names = (*study.objectives.names, *map(name_of, self._own))  #: of the objectives
 
     @property
     def constraint_names(self) -> tuple[str, ...]:
@@ -90,11 +81,7 @@ class JumpFunction:
         return (*(limit.key for limit in self._study.constraints.limits), *map(name_of, self._own_limits))
 
     def __call__(self, values: Floats) -> Judged:
-        """Let the designs at ``values`` jump, shape (n, d); whole numbers may be any numbers that round to them.
-
-        Raises:
-            StudyError: an own function returned something else than n numbers.
-        """
+        """Let the designs at ``values`` jump, shape (n, d); whole numbers may be any numbers that round to them."""
         points = self.space.snap(np.atleast_2d(np.asarray(values, dtype=np.float64)))
         where = self._coordinates
         designs = where.designs(points)

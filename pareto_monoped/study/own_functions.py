@@ -1,8 +1,7 @@
 """Objectives and constraints of the user's own: plain functions of a table of jumps, evaluated with every generation.
 
-A database stores a function's name and its values, never the function: who continues a study brings it again.
-
-What a caller brings along that no database holds: functions, an algorithm, a calibration.
+A database stores a function's name and its values, never the function: who continues a study brings it again, as well
+as an algorithm or calibration of the user's own.
 """
 
 import difflib
@@ -55,19 +54,16 @@ class OwnEvaluations(Evaluations):
     own: Mapping[str, Floats]
 
     def of(self, name: str) -> Floats:
-        """The measure of that name, shape (n,)."""
+        """Return the measure of that name, shape (n,)."""
         return self.own[name] if name in self.own else self.jumps.of(name)
 
     def as_columns(self) -> dict[str, NDArray[np.generic]]:
-        """Column name to values of shape (n,), ``status`` and ``reason`` first, own functions last."""
+        """Return column name -> values of shape (n,), ``status`` and ``reason`` first, own functions last."""
         return self.jumps.as_columns() | dict(self.own)
 
 
 def with_functions(evaluate: Callable[..., Evaluations], functions: Functions) -> Callable[..., Evaluations]:
-    """What a study's trials are evaluated with, and its own functions after that.
-
-    In the first generation, the functions must give some jumps alone the same values as among the others.
-    """
+    """Return what evaluates a study's trials and its own functions; the first generation shows if these mix jumps."""
     if not functions:
         return evaluate
     unchecked = dict(functions)
@@ -88,11 +84,7 @@ def with_functions(evaluate: Callable[..., Evaluations], functions: Functions) -
 
 
 def called(function: OwnFunction, table: Jumps, failed: NDArray[np.bool_]) -> Floats:
-    """The values of an own function, shape (n,).
-
-    Raises:
-        StudyError: it fails, or returns something else than n numbers that are finite where the jump did not fail.
-    """
+    """Return the values of an own function, shape (n,); refuse all but numbers, finite where the jump did not fail."""
     n, source = len(failed), f"own function {name_of(function)!r}"
     try:
         # A copy of the table: what a function changes must not reach the database.
@@ -114,16 +106,7 @@ def called(function: OwnFunction, table: Jumps, failed: NDArray[np.bool_]) -> Fl
 
 
 def _refuse_mixing(function: OwnFunction, table: Jumps, values: Floats) -> None:
-    """Refuse a function that takes a jump's value from other jumps, too; asked of the first and the last one.
-
-    Args:
-        function: the own function.
-        table: n jumps.
-        values: of the function, shape (n,); NaN where the jump failed.
-
-    Raises:
-        StudyError: a value of another size than that of the same jump alone.
-    """
+    """Refuse a function that takes a jump's value from other jumps, too; ask it of the first and the last one."""
     jumped = np.flatnonzero(np.isfinite(values))
     for k in (jumped[0], jumped[-1]):
         alone = Jumps({name: column[k : k + 1] for name, column in table.items()})
@@ -136,12 +119,12 @@ def _refuse_mixing(function: OwnFunction, table: Jumps, values: Floats) -> None:
 
 
 def _has_truth(given: NDArray[Any]) -> bool:
-    """Whether an answer has True or False in it, which as 1 or 0 would mean the opposite in a constraint."""
+    """Return whether an answer has True or False in it, which as 1 or 0 would mean the opposite in a constraint."""
     return given.dtype == np.bool_ or (given.dtype == object and any(isinstance(one, bool) for one in given.flat))
 
 
 def _cure(error: Exception, table: Jumps, n: int) -> str:
-    """What to do about an error of an own function."""
+    """Return what to do about an error of an own function."""
     if isinstance(error, AttributeError) and isinstance(error.obj, Jumps):
         near = difflib.get_close_matches(str(error.name), table, n=1)
         return f'take measures by name: jumps["{near[0] if near else MEASURE_NAMES[0]}"]'
@@ -151,16 +134,12 @@ def _cure(error: Exception, table: Jumps, n: int) -> str:
 
 
 def name_of(function: object) -> str:
-    """What a function is called."""
+    """Return what a function is called."""
     return str(getattr(function, "__name__", type(function).__name__))
 
 
 def own_name(function: object) -> str:
-    """The name of the measure that a function is.
-
-    Raises:
-        StudyError: no function, or one whose name cannot be stored, such as a lambda.
-    """
+    """Return the name of the measure that a function is; refuse one that cannot be stored, such as a lambda's."""
     if not callable(function) or isinstance(function, type):
         allowed = "the name of a measure or a function of the jumps"
         raise StudyError(complaint("objective or constraint", function, allowed, "give one of these"))
@@ -175,11 +154,7 @@ def own_name(function: object) -> str:
 
 
 def listed(what: str, given: Any) -> Sequence[Any]:
-    """Functions as a list; one alone is a list of one.
-
-    Raises:
-        StudyError: neither a list nor a function.
-    """
+    """Return functions as a list; one alone is a list of one."""
     if callable(given):
         return [given]
     if isinstance(given, str | Mapping) or not isinstance(given, Sequence):
@@ -188,11 +163,7 @@ def listed(what: str, given: Any) -> Sequence[Any]:
 
 
 def functions_of(given: Sequence[object]) -> dict[str, OwnFunction]:
-    """Functions by the names of their measures.
-
-    Raises:
-        StudyError: no function, one without a usable name, or two of the same name.
-    """
+    """Return functions by the names of their measures, each of which may be used once."""
     found: dict[str, OwnFunction] = {}
     for function in given:
         name = own_name(function)
@@ -205,11 +176,7 @@ def functions_of(given: Sequence[object]) -> dict[str, OwnFunction]:
 
 
 def require_functions(names: Sequence[str], functions: Functions, source: str) -> None:
-    """Refuse to go on without the functions that a study names, or with others.
-
-    Raises:
-        StudyError: the message says how to give them.
-    """
+    """Refuse to go on without the functions that a study names, or with others; say how to give them."""
     if lacking := [name.removeprefix(OWN) for name in names if name not in functions]:
         raise StudyError(
             f"{source}: needs {', '.join(lacking)}, which only your program has; go on from Python: "
@@ -220,11 +187,7 @@ def require_functions(names: Sequence[str], functions: Functions, source: str) -
 
 
 def refuse_other_functions(trials: pd.DataFrame, functions: Functions, source: str) -> None:
-    """Refuse functions that give other values than those stored, in some trials from the first to the last.
-
-    Raises:
-        StudyError: the message shows both values.
-    """
+    """Refuse functions that give other values than those stored, in some trials from the first to the last."""
     jumped = trials[trials["status"] == "ok"]
     rows = jumped.iloc[np.unique(np.linspace(0, len(jumped) - 1, min(_CHECKED, len(jumped))).astype(int))]
     table = Jumps({name: rows[name].to_numpy(dtype=np.float64) for name in (*NAMES, *MEASURE_NAMES)})

@@ -63,5 +63,5 @@ class MonopedProblem(Problem):  # type: ignore[misc]  # pymoo has no types
         out["F"], out["G"] = judged.objectives, judged.constraints
 
     def decode(self, x: Floats) -> "dict[str, np.ndarray[Any, Any]]":
-        """Variables, measures and status of the jumps at ``x``, shape (d,) or (n, d); each of shape (n,)."""
+        """Return variables, measures and status of the jumps at ``x``, shape (d,) or (n, d); each of shape (n,)."""
         return dict(self.jump(x).table)

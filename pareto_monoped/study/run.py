@@ -1,7 +1,4 @@
-"""Run a study into its database, or continue it: checks before, one session, the audit after.
-
-Iterations of a weighted search that are each weight's share of the budget: given once, when a database is made.
-"""
+"""Run a study into its database, or continue it: checks before, one session, the audit after."""
 
 from collections.abc import Callable
 from concurrent.futures import Executor
@@ -35,10 +32,7 @@ from pareto_monoped.study.simulator import (
 
 
 def shared_anew(study: Study, evaluations: int | None) -> Study:
-    """The study of a new database: a budget beyond the file's own is shared out, too.
-
-    A smaller one cuts the search short, so that it can go on later.
-    """
+    """Return the study of a new database: a budget beyond the file's own is shared out, a smaller one cuts it."""
     settings = study.algorithm
     if not study.shared_iterations or not isinstance(settings, WeightedSettings):
         return study
@@ -47,7 +41,7 @@ def shared_anew(study: Study, evaluations: int | None) -> Study:
 
 
 def shared_as_stored(study: Study, stored: Study) -> Study:
-    """The study of a database that there is: a file that gives no iterations takes those that it was made with."""
+    """Return the study of an existing database: a file that gives no iterations takes the stored ones."""
     settings, before = study.algorithm, stored.algorithm
     if study.shared_iterations and isinstance(settings, WeightedSettings) and isinstance(before, WeightedSettings):
         return replace(study, algorithm=replace(settings, iterations=before.iterations))
@@ -90,17 +84,11 @@ def run(
 ) -> RunSummary:
     """Run a study into a database, or continue it where it stopped.
 
-    Args:
-        study: the definition.
-        db: its database; created if missing. A server's address without a schema gets one after the study's name.
-        evaluations: total number of trials, instead of the study's.
-        seed: instead of the study's.
-        workers: number of threads that simulate, all cores if None. It does not change the trials.
-        executor: does the jumps in their place, here or elsewhere; it does not change the trials either.
-        progress: called after each stored generation. If it returns True, the run ends with the next generation, which
-            is computed by then; it is stored and told of, too.
-        notify: called with a line for the user, for example on Ctrl-C.
-        own: functions, algorithm and calibration of the user's own.
+    The database is created if missing; a server's address without a schema gets one after the study's name.
+    ``evaluations``, the total number of trials, and ``seed`` replace the study's. Neither ``workers``, threads that
+    simulate, nor an ``executor`` in their place changes the trials. ``progress`` is called after each stored
+    generation; if it returns True, the run ends with the next generation, which is computed by then, stored and told
+    of. ``notify`` gets lines for the user, for example on Ctrl-C.
 
     Raises:
         StudyError: the study in the database has other settings; the message shows the difference. Or ``own`` is not
@@ -145,22 +133,10 @@ def resume(
     notify: Callable[[str], None] | None = None,
     own: Own = NOTHING,
 ) -> RunSummary:
-    """Continue a study from its database alone.
+    """Continue a study from its database alone; arguments and errors are as for ``run``.
 
-    Args:
-        db: the database.
-        evaluations: the new total; by default the total of the last run.
-        workers: number of threads that simulate, all cores if None.
-        executor: does the jumps in their place.
-        progress: called after each stored generation. If it returns True, the run ends with the next generation, which
-            is computed by then; it is stored and told of, too.
-        notify: called with a line for the user.
-        own: the functions and the algorithm that the study names, which its database does not hold.
-
-    Raises:
-        StudyError: this code or machine computes other results than the study began with, ``own`` is not what the study
-            names, or ``evaluations`` is less than what is stored.
-        DatabaseError: the file is not a study, is damaged, is in use by another process, or cannot be written.
+    The default for ``evaluations`` is the total of the last run. ``own`` has the functions and the algorithm that the
+    study names, which its database does not hold. This code and machine must compute what the study began with.
     """
     read_study(db)
     with storage_of(db).locked() as lock:
@@ -173,7 +149,7 @@ def resume(
 
 
 def _checked(db: StudyPlace, lock: StudyLock) -> StudyData:
-    """The study, if it has everything that was safe when its last run was killed."""
+    """Return the study, if it has everything that was safe when its last run was killed."""
     data = read_study(db)
     lock.confirm(data.links)
     return data
@@ -233,17 +209,13 @@ def _refuse_other_results(data: StudyData, simulator: Simulator, db: StudyPlace)
 
 
 def refuse_other_code(data: StudyData, simulator: Simulator) -> None:
-    """Refuse to repeat a study's jumps with code or a machine that would compute others.
-
-    Raises:
-        StudyError: the message shows the difference.
-    """
+    """Refuse to repeat a study's jumps with code or a machine that would compute others."""
     _refuse_changes(data, data.study, simulator, data.db)
     _refuse_other_results(data, simulator, data.db)
 
 
 def _nothing_left(data: StudyData, study: Study, budget: int) -> bool:
-    """Whether the study has ended and would end again at once."""
+    """Return whether the study has ended and would end again at once."""
     same = data.meta.finished and study == data.study
     return same and (len(data.trials) >= budget or data.meta.stop_reason != "budget")
 

@@ -1,6 +1,6 @@
 """Run one session of a study: ask, simulate, tell, store. Only this module knows algorithm, simulator and storage.
 
-Ctrl-C in two steps: the first asks for an orderly end, the second ends at once; SIGTERM and SIGHUP likewise.
+The first Ctrl-C asks for an orderly end, the second ends at once; SIGTERM and SIGHUP likewise.
 """
 
 import signal
@@ -156,10 +156,7 @@ class Session:
         return None
 
     def _simulate(self) -> Generation | None:
-        """Ask for a generation, simulate the part that is missing, and tell the scores once it is complete.
-
-        Returns None if the algorithm has no more designs.
-        """
+        """Ask for designs, simulate what is missing, and tell the scores once complete; None if there is no more."""
         proposal = self._algorithm.ask()
         if proposal is None:
             return None
@@ -187,11 +184,7 @@ class Session:
             self._algorithm.tell(self._scores)
             state = self._algorithm.state()
             self._generation += 1
-            self._designs, self._motors, self._scores = (
-                self._designs[:0],
-                _first(motors, 0),
-                _joined(self._scores, None),
-            )
+            self._designs, self._motors, self._scores = self._designs[:0], _first(motors, 0), self._scores.of(slice(0))
         volume = hypervolume(self._front.values, self._study.reference_point)
         self._volumes.append((self.total, volume))
         return Generation(
@@ -259,10 +252,7 @@ def _history(data: StudyData, coordinates: Coordinates) -> Iterator[tuple[NDArra
             yield coordinates.values(designs, motors), known
 
 
-def _joined(before: Scores, new: Scores | None) -> Scores:
-    """Join both, one after the other; empty scores if ``new`` is None."""
-    if new is None:
-        return before.of(slice(0))
+def _joined(before: Scores, new: Scores) -> Scores:
     return Scores(
         objectives=before.objectives,
         values=np.concatenate((before.values, new.values)),

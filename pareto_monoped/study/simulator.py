@@ -47,14 +47,13 @@ class Simulator:
         return {**dict(motors), "calibration": calibration_values(self.calibration)}
 
     def coordinates(self, study: Study) -> Coordinates:
-        """What an algorithm searches in ``study``: lists of these motors' gearboxes where the study has them."""
+        """Return what an algorithm searches in ``study``: lists of these motors' gearboxes where the study has them."""
         return searched_coordinates(study, self.evaluator.actuator_maps)
 
     def probe(self) -> list[list[float | None]]:
-        """Height and energy of the paper's four designs and four fixed ones: a fingerprint of everything that counts.
+        """Return height and energy of the paper's four designs and four fixed ones, with each kit of motors.
 
-        With several kits of motors, of these eight designs with each of them. Code, compiler, library versions and
-        processor all show in their last digits.
+        Code, compiler, library versions and processor all show in their last digits.
         """
         paper = np.array([case.design.as_array() for case in PAPER_CASES.values()])
         drawn = np.random.default_rng(20250101).uniform(LOWER, UPPER, size=(4, len(LOWER)))
@@ -65,7 +64,7 @@ class Simulator:
 
 
 def evaluation_of(study: Study, evaluator: Evaluator) -> Evaluate:
-    """What the trials of a study are evaluated with: jumps as designed, and as built where it asks for those."""
+    """Return what evaluates the trials of a study: jumps as designed, and as built where it asks for those."""
     if study.uncertainty is None or not study.robust_names:
         return evaluator
     return RobustEvaluator(
@@ -76,13 +75,7 @@ def evaluation_of(study: Study, evaluator: Evaluator) -> Evaluate:
 def load_simulator(
     study: Study, *, workers: int, executor: Executor | None = None, calibration: Calibration | None = None
 ) -> Simulator:
-    """The simulator of a study file: reads the motor and the calibration that it names.
-
-    Args:
-        study: names the motor and the calibration, or files of them.
-        workers: threads that simulate.
-        executor: shares out the jumps in their place.
-        calibration: the user's own, in place of the one that the study names.
+    """Make the simulator of a study file: read the motor, and the calibration unless the user's own is given.
 
     Raises:
         MotorError, CalibrationError: an unknown name or an unusable file, or a motor without any gearbox.
@@ -99,17 +92,10 @@ def continued_simulator(
     executor: Executor | None = None,
     calibration: Calibration | None = None,
 ) -> Simulator:
-    """The simulator of a study file that continues a stored study.
+    """Make the simulator of a study file that continues a stored study.
 
     A motor or calibration that the user has not changed is as stored: the same file, or the same shipped name. A later
     version may estimate more from the same file, or know better of the same shipped motor.
-
-    Args:
-        data: the stored study.
-        study: names the motor and the calibration, or files of them.
-        workers: threads that simulate.
-        executor: shares out the jumps in their place.
-        calibration: the user's own, in place of the one that the study names.
 
     Raises:
         MotorError, CalibrationError: an unknown name or an unusable file, or a motor without any gearbox.
@@ -166,16 +152,7 @@ def _simulator(
 
 
 def stored_simulator(data: StudyData, *, workers: int, executor: Executor | None = None) -> Simulator:
-    """The simulator of a stored study: from the database alone, whatever has become of the user's files.
-
-    Args:
-        data: the stored study.
-        workers: threads that simulate.
-        executor: shares out the jumps in their place.
-
-    Raises:
-        DatabaseError: the stored motor or calibration is damaged.
-    """
+    """Make the simulator of a stored study from the database alone, whatever has become of the user's files."""
     first, *others = data.kits
     return Simulator(
         motors=data.motors,
@@ -186,11 +163,7 @@ def stored_simulator(data: StudyData, *, workers: int, executor: Executor | None
 
 
 def _named_calibration(name: str) -> Calibration:
-    """The calibration that a study names.
-
-    Raises:
-        CalibrationError: an unknown name, an unusable file, or the name of one that only its user's program has.
-    """
+    """Return the calibration that a study names, unless only its user's program has it."""
     if name.startswith(OWN_CALIBRATION):
         raise CalibrationError(
             f"calibration {name.removeprefix(OWN_CALIBRATION)!r}: only your program has it; start the study from "
@@ -200,6 +173,6 @@ def _named_calibration(name: str) -> Calibration:
 
 
 def _text(name: str) -> str | None:
-    """Text of a user's file; None for the name of a shipped one."""
+    """Return the text of a user's file; None for the name of a shipped one."""
     path = Path(name)
     return path.read_text(encoding="utf-8") if name.endswith(".toml") and path.is_file() else None

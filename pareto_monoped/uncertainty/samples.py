@@ -1,7 +1,4 @@
-"""Samples of what is uncertain: scrambled Sobol points, the same for every design.
-
-Designs to their measures under uncertainty, for a search: the same samples for every design.
-"""
+"""Samples of what is uncertain, the same scrambled Sobol points for every design, and designs' measures under them."""
 
 from collections.abc import Mapping, Sequence
 from contextlib import closing
@@ -68,15 +65,9 @@ class Samples:
 
 
 def sobol_samples(uncertainty: Uncertainty, count: int = DEFAULT_SAMPLES, seed: int = DEFAULT_SEED) -> Samples:
-    """Scrambled Sobol points (Owen 1998, by SciPy) on all ranges.
+    """Draw scrambled Sobol points (Owen 1998, by SciPy) on all ranges; ``count`` is a power of two.
 
-    Args:
-        uncertainty: the ranges.
-        count: a power of two, for which these points are balanced.
-        seed: of the scrambling. The same seed gives the same samples whatever the ranges are, and for every design.
-
-    Raises:
-        InputError: ``count`` is no power of two.
+    The same seed gives the same samples whatever the ranges are, and for every design.
     """
     from scipy.stats import qmc
 
@@ -88,7 +79,7 @@ def sobol_samples(uncertainty: Uncertainty, count: int = DEFAULT_SAMPLES, seed: 
 
 
 def samples_at(uncertainty: Uncertainty, points: Floats) -> Samples:
-    """The samples at points of the unit cube, shape (count, sum of ``DIMENSIONS``)."""
+    """Return the samples at points of the unit cube, shape (count, sum of ``DIMENSIONS``)."""
     values: dict[Name, Floats] = {}
     first = 0
     for name, k in DIMENSIONS:
@@ -99,11 +90,7 @@ def samples_at(uncertainty: Uncertainty, points: Floats) -> Samples:
 
 
 def variations(samples: Samples, designs: int, calibration: Calibration) -> Variations:
-    """The variations of all samples of each of some designs, shape (designs * samples, ...), design by design.
-
-    Raises:
-        InputError: a delay that is longer than the controller can keep.
-    """
+    """Return all samples' variations, shape (designs * samples, ...), design by design; refuse too long a delay."""
     period = calibration.simulation.period_s
     longest = float(samples.values["delay_s"].max()) + calibration.simulation.delay_s
     if round(longest / period) > MOST_DELAY:
@@ -142,12 +129,12 @@ class RobustEvaluations(Evaluations):
     robust: Mapping[str, Floats]
 
     def of(self, name: str) -> Floats:
-        """The measure of that name, shape (n,)."""
+        """Return the measure of that name, shape (n,)."""
         values: Floats = self.robust[name] if is_robust(name) else getattr(self, name)
         return values
 
     def as_columns(self) -> dict[str, NDArray[np.generic]]:
-        """Column name to values of shape (n,), ``status`` and ``reason`` first, those under uncertainty last."""
+        """Return column name -> values of shape (n,), ``status`` and ``reason`` first, those under uncertainty last."""
         columns = Evaluations.as_columns(self)
         del columns["robust"]
         return columns | dict(self.robust)
@@ -155,10 +142,7 @@ class RobustEvaluations(Evaluations):
 
 @dataclass(frozen=True, kw_only=True)  # without slots: a cached property needs a place to keep its value
 class RobustEvaluator:
-    """Evaluates designs as designed, and as built in all samples.
-
-    To the last bit, the result of a design does not depend on the other designs or on the number of workers.
-    """
+    """Evaluates designs as designed and as built in all samples, each independently of the others to the last bit."""
 
     evaluator: Evaluator  #: simulates
     sampling: Sampling  #: ranges, samples and seed
@@ -171,13 +155,10 @@ class RobustEvaluator:
         return sobol_samples(self.sampling.ranges, self.sampling.samples, self.sampling.seed)
 
     def __call__(self, designs: ArrayLike, motors: ArrayLike | None = None) -> RobustEvaluations:
-        """Jump with each design.
+        """Jump with each design, and as built with those that jump as designed.
 
-        Designs that do not jump as designed are not simulated as built.
-
-        Args:
-            designs: shape (n, number of variables), see ``design.complete``.
-            motors: which of the evaluator's ``actuator_maps`` each design is built with, shape (n,); the first if None.
+        ``motors`` says which of the evaluator's ``actuator_maps`` each design is built with, shape (n,); the first if
+        None.
         """
         values = np.atleast_2d(complete(designs))
         kits = np.zeros(len(values), dtype=np.intp) if motors is None else np.asarray(motors, dtype=np.intp)
@@ -199,7 +180,7 @@ class RobustEvaluator:
         return RobustEvaluations(**given, reason=tuple(reasons), robust=robust)
 
     def _jumps(self, designs: Floats, kits: NDArray[np.intp]) -> Evaluations:
-        """All samples of some designs, design by design."""
+        """Simulate all samples of some designs, design by design."""
         count = len(self.drawn)
         return self.evaluator(
             np.repeat(designs, count, axis=0),
@@ -208,7 +189,7 @@ class RobustEvaluator:
         )
 
     def _measures(self, jumps: Evaluations, rows: slice) -> dict[str, float]:
-        """The wanted measures of one design, and always the shares of its jumps that fail and that overload a part."""
+        """Return one design's wanted measures, and always the shares of jumps that fail and overload a part."""
         ok = jumps.ok[rows]
         found = {
             "failed_share": float(1.0 - ok.mean()),

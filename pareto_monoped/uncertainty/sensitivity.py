@@ -1,11 +1,6 @@
-"""Which of many factors moves the measures of a design most: Sobol' indices, and the change from end to end.
+"""Which factors move the measures of a design most: Sobol' indices, the change from end to end, and their records."""
 
-The single numbers that vary under uncertainty, one per factor of a sensitivity: name, words, ends and unit.
-
-What a sensitivity says: of each factor, how far it moves each measure, and its share of the measure's variance.
-"""
-
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Annotated, Any, Literal
 
@@ -45,17 +40,11 @@ class Indices:
 
 
 def indices(simulate: Simulate, factors: int, blocks: int = DEFAULT_BLOCKS, seed: int = 1) -> Indices:
-    """Sobol' indices of independent factors that are uniform on the unit interval.
+    """Compute Sobol' indices of independent factors that are uniform on the unit interval.
 
     The sampling plan and its Sobol' points are those of Saltelli et al. 2010 (Variance based sensitivity analysis of
     model output); SciPy has the estimators. A base sample with a jump that fails is left out whole, and of the others
     the first ones whose number is a power of two are used.
-
-    Args:
-        simulate: the model, vectorised.
-        factors: number d of factors.
-        blocks: base samples, a power of two.
-        seed: of the points and of the resampling.
 
     Raises:
         InputError: ``blocks`` is no power of two, or too few are left.
@@ -106,16 +95,11 @@ def indices(simulate: Simulate, factors: int, blocks: int = DEFAULT_BLOCKS, seed
 
 
 def _effects(table: Floats, steps: Floats) -> Floats:
-    """Mean slopes of the measures over the unit interval of each factor, by least squares over single steps.
+    """Return mean slopes of the measures over the unit interval of each factor, by least squares: shape (s, d).
 
-    Each step moves one factor alone, so that a factor which moves nothing has a change of exactly zero.
-
-    Args:
-        table: measures at the first points, the second, and those with one factor of the second, shape (d + 2, s, n).
-        steps: of each factor, shape (n, d).
-
-    Returns:
-        Shape (s, d).
+    Each step moves one factor alone, so that a factor which moves nothing has a change of exactly zero. ``table`` has
+    the measures at the first points, the second, and those with one factor of the second, shape (d + 2, s, n);
+    ``steps`` has the shape (n, d).
     """
     changes = table[2:] - table[0]
     return np.asarray(np.einsum("dsn,nd->sd", changes, steps) / np.square(steps).sum(axis=0))
@@ -162,7 +146,7 @@ that are bought, and of use."""
 
 
 def factors_of(ranges: Uncertainty) -> tuple[Factor, ...]:
-    """The factors of all ranges, in the order of ``samples.DIMENSIONS``."""
+    """Return the factors of all ranges, in the order of ``samples.DIMENSIONS``."""
     found = []
     for name, count in DIMENSIONS:
         ends = ranges.ranges[name]
@@ -181,7 +165,7 @@ def factors_of(ranges: Uncertainty) -> tuple[Factor, ...]:
 
 
 def between(factor: Factor, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The values of a factor at points of the unit interval, shape (n,)."""
+    """Return the values of a factor at points of the unit interval, shape (n,)."""
     return factor.lower + (factor.upper - factor.lower) * points
 
 
@@ -220,33 +204,29 @@ class Sensitivity(Strict):
     factors: tuple[FactorInfluence, ...]  #: those that vary
 
     def ranked(self, name: str) -> list[FactorInfluence]:
-        """The factors by their total index of a measure, the greatest first."""
+        """Return the factors by their total index of a measure, the greatest first."""
         return sorted(self.factors, key=lambda one: -one.measures[name].total)
 
     def as_dict(self) -> dict[str, Any]:
-        """As JSON values."""
+        """Return JSON values."""
         return asdict(self) | {"factors": [asdict(one) for one in self.factors]}
 
 
 def sensitivity_of(about: About, factors: Sequence[Factor], found: Indices, names: Sequence[str]) -> Sensitivity:
-    """The record of what was found of d factors and s measures, called ``names``."""
+    """Return the record of what was found of d factors and s measures, called ``names``."""
 
-    def influences(column: int) -> Iterator[tuple[str, Influence]]:
-        for row, name in enumerate(names):
-            yield (
-                name,
-                Influence(
-                    change=float(found.effect[row, column]),
-                    first=float(found.first[row, column]),
-                    total=float(found.total[row, column]),
-                    error=float(found.error[row, column]),
-                ),
-            )
+    def influence(row: int, column: int) -> Influence:
+        parts = (found.effect, found.first, found.total, found.error)
+        change, first, total, error = (float(part[row, column]) for part in parts)
+        return Influence(change=change, first=first, total=total, error=error)
 
     return Sensitivity(
         about=about,
         blocks=found.blocks,
         jumps=found.jumps,
         failed=found.failed,
-        factors=tuple(FactorInfluence(factor=factor, measures=dict(influences(k))) for k, factor in enumerate(factors)),
+        factors=tuple(
+            FactorInfluence(factor=factor, measures={name: influence(row, k) for row, name in enumerate(names)})
+            for k, factor in enumerate(factors)
+        ),
     )

@@ -1,7 +1,4 @@
-"""What a study says of uncertainty: its own ranges, and how many samples each design has while it searches.
-
-Ranges of everything that is uncertain in a built robot, from TOML.
-"""
+"""Ranges of everything that is uncertain in a built robot, and the samples that a study searches with, from TOML."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -70,25 +67,17 @@ class Uncertainty(Strict):
         return {name: getattr(self, name) for name in self.__dataclass_fields__ if name != "name"}
 
     def as_dict(self) -> dict[str, Any]:
-        """As in a file; ``uncertainty_of`` reads it back."""
+        """Return the ranges as in a file; ``uncertainty_of`` reads them back."""
         return asdict(self)
 
 
 def uncertainty_of(values: Mapping[str, Any], *, source: str, error: type[InputError] = InputError) -> Uncertainty:
-    """Ranges from plain values.
-
-    Raises:
-        InputError: (or ``error``) a missing or wrong value, or an unknown key.
-    """
+    """Return ranges from plain values; raise ``error`` for a missing or wrong value, or an unknown key."""
     return checked(Uncertainty, values, source=source, error=error)
 
 
 def load_uncertainty(path: Path | None = None) -> Uncertainty:
-    """The shipped ranges, or those of a file: what it leaves out is as shipped.
-
-    Raises:
-        InputError: no readable file, an unknown key, or a wrong value.
-    """
+    """Read the shipped ranges, or those of a file: what it leaves out is as shipped."""
     shipped = read_shipped(SHIPPED, what=WHAT)
     if path is None:
         return uncertainty_of(shipped, source=WHAT)
@@ -120,16 +109,12 @@ class Sampling:
     seed: int = DEFAULT_SEED  #: of the samples, which all designs and all seeds of the search have in common
 
     def as_dict(self) -> dict[str, Any]:
-        """As in a study file, with all ranges; ``sampling_of`` reads it back."""
+        """Return the values of a study file, with all ranges; ``sampling_of`` reads them back."""
         return {**self.ranges.as_dict(), "samples": self.samples, "seed": self.seed}
 
 
 def sampling_of(table: Mapping[str, Any], *, source: str) -> Sampling:
-    """The table ``[uncertainty]`` of a study; what it leaves out is as shipped.
-
-    Raises:
-        StudyError: an unknown key, a wrong range, or a number of samples that Sobol points cannot have.
-    """
+    """Return the table ``[uncertainty]`` of a study; what it leaves out is as shipped."""
     given = dict(table)
     samples, seed = given.pop("samples", SEARCH_SAMPLES), given.pop("seed", DEFAULT_SEED)
     whole = isinstance(samples, int) and not isinstance(samples, bool)

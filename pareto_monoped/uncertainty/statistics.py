@@ -40,18 +40,12 @@ class Robustness(Strict):
     measures: dict[str, Spread]  #: the measures by name; those without a value in every successful jump are left out
 
     def as_dict(self) -> dict[str, Any]:
-        """As JSON values."""
+        """Return JSON values."""
         return asdict(self)
 
 
 def robustness(evaluations: Evaluations, rows: slice, least: Mapping[str, float]) -> Robustness:
-    """The robustness of one design.
-
-    Args:
-        evaluations: jumps of many samples.
-        rows: which of them are of this design, at least one.
-        least: measures of strength and what each must at least be.
-    """
+    """Return the robustness of one design from its ``rows`` of jumps and the ``least`` value of each strength."""
     ok = evaluations.ok[rows]
     spreads = {name: spread(getattr(evaluations, name)[rows][ok]) for name in MEASURE_NAMES}
     return Robustness(
@@ -63,7 +57,7 @@ def robustness(evaluations: Evaluations, rows: slice, least: Mapping[str, float]
 
 
 def overloads(evaluations: Evaluations, rows: slice, least: Mapping[str, float]) -> NDArray[np.bool_]:
-    """Which of these jumps exceed what some joint or part carries, shape (len of ``rows``,)."""
+    """Return which of these jumps exceed what some joint or part carries, shape (len of ``rows``,)."""
     found = np.zeros(len(evaluations.ok[rows]), dtype=bool)
     for name, value in least.items():
         with np.errstate(invalid="ignore"):
@@ -72,7 +66,7 @@ def overloads(evaluations: Evaluations, rows: slice, least: Mapping[str, float])
 
 
 def spread(values: NDArray[np.float64]) -> Spread | None:
-    """The spread of the values of all jumps that succeed, shape (n,); None without any, or where one has no value."""
+    """Return the spread of the values of all jumps that succeed, (n,); None without any, or where one lacks a value."""
     if len(values) == 0 or not np.isfinite(values).all():
         return None
     low, high = np.percentile(values, (LOW_PERCENT, HIGH_PERCENT))
