@@ -1,4 +1,4 @@
-"""What can be asked of a front: one of its designs, and conditions, which designs meet and messages word."""
+"""What can be asked of a front: one of its designs, under conditions; which designs meet these, and their wording."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -412,7 +412,7 @@ def _is_empty(connection: ServerConnection, schema: str | None) -> bool:
 
 
 def failure(server: Server, error: BaseException, *, open_before: bool = False) -> ParetoMonopedError:
-    """Return the error of ours for one of psycopg or SQLAlchemy; ``open_before``: the connection had been open."""
+    """Return our error for one of psycopg or SQLAlchemy, whose connection may have been ``open_before``."""
     text = _said(error)
     start = f"study database {str(server)!r}: "
     state = getattr(error, "sqlstate", None)
