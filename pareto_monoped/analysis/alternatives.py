@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 from pareto_monoped.definition.variables import Bounds
 from pareto_monoped.design import LENGTHS, RATIOS, VARIABLES
 from pareto_monoped.errors import SelectionError
-from pareto_monoped.pareto.alternatives import distances, most_different, prices
-from pareto_monoped.pareto.objectives import Objectives
+from pareto_monoped.pareto.objectives import Floats, Objectives
 from pareto_monoped.pareto.selectors import Condition, fitting
 from pareto_monoped.search.algorithm import MOTOR_OF
 from pareto_monoped.storage.reader import StudyData
 
+LEAST_DISTANCE = 0.02
+"""Distance below which two designs count as the same. Our own choice: 2 percent of one variable's range, which is 4 mm
+of a link, is less than anybody would call another robot."""
 _VARIABLES = {variable.name: variable for variable in VARIABLES}
 _WORTH_TELLING = 0.05
 """Least difference of a number that is told, as a share of its range. Our own choice: 1 cm of a link."""
@@ -32,7 +34,7 @@ class Scale:
     names: tuple[str, ...]  #: of the d free variables, and of the choices of a motor (``MOTOR_OF``)
     #: Shape (n, d): numbers as shares of their ranges, gearboxes by their place in the list of those that the study's
     #: trials have, motors by number
-    points: NDArray[np.float64]
+    points: Floats
     categories: NDArray[np.bool_]  #: which of them have no order, shape (d,)
 
 
@@ -116,7 +118,7 @@ class Alternative:
     changes: tuple[float, ...]  #: of the objectives from the picked design, as shares of its values
     #: The greatest loss in any objective, as a share of the picked design's value; at most 0 if there is none
     price: float
-    distance: float  #: from the picked design, see ``pareto.alternatives.distances``
+    distance: float  #: from the picked design, see ``distances``
     differs: tuple[str, ...]  #: how it differs, in phrases
     audited: bool  #: whether it has an audit. Audits are for the front; an alternative is often just behind it.
 
@@ -140,6 +142,45 @@ class Alternative:
             "differs": list(self.differs),
             "audited": self.audited,
         }
+
+
+def prices(values: Floats, of: Floats, objectives: Objectives) -> Floats:
+    """Return what designs, (n, m), cost against one, (m,): the greatest loss as a share of its value, (n,).
+
+    A design that is worse in no objective costs at most 0. Where the given value is 0, any loss is infinite.
+    """
+    lost = objectives.minimised(values) - objectives.minimised(of)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.where(lost == 0.0, 0.0, lost / np.abs(of))
+    return np.asarray(shares.max(axis=1))
+
+
+def distances(points: Floats, to: Floats, categories: NDArray[np.bool_]) -> Floats:
+    """Return distances of designs, shape (n, d), from one design, shape (d,), as shares of the variables' ranges, (n,).
+
+    Numbers are scaled so that their range is 1; different values of ``categories``, without an order, are 1 apart.
+    """
+    apart = np.abs(points - to)
+    apart[:, categories] = apart[:, categories] != 0.0
+    return np.asarray(np.linalg.norm(apart, axis=1))
+
+
+def most_different(points: Floats, given: int, count: int, categories: NDArray[np.bool_]) -> list[int]:
+    """Return up to ``count`` rows of designs that differ most from a given one and from each other.
+
+    Greedy: each next design is the one whose nearest design among those taken is farthest, of equals the first
+    (Gonzalez 1985, who shows that the least distance is at least half of the best possible). It ends where that is
+    below ``LEAST_DISTANCE``.
+    """
+    taken: list[int] = []
+    nearest = distances(points, points[given], categories)
+    while len(taken) < count:
+        row = int(np.argmax(nearest))
+        if nearest[row] < LEAST_DISTANCE:
+            break
+        taken.append(row)
+        nearest = np.minimum(nearest, distances(points, points[row], categories))
+    return taken
 
 
 def alternatives(
@@ -193,7 +234,7 @@ def _within(
     data: StudyData,
     trials: pd.DataFrame,
     trial: int,
-    of: np.ndarray,
+    of: Floats,
     tolerance: float,
     conditions: Sequence[Condition],
 ) -> pd.DataFrame:
@@ -207,7 +248,7 @@ def _within(
     return rows.iloc[order[cost[order] <= tolerance]]
 
 
-def _changes(values: np.ndarray, of: np.ndarray) -> tuple[float, ...]:
+def _changes(values: Floats, of: Floats) -> tuple[float, ...]:
     """Return changes as shares; a change from 0 is infinite."""
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = np.where(values == of, 0.0, (values - of) / np.abs(of))

@@ -179,7 +179,7 @@ def robust_trials(data: StudyData, stored: Mapping[int, Stored]) -> RobustTrials
 
 
 def robust_front(data: StudyData, trials: RobustTrials) -> pd.DataFrame:
-    """Return the trials that no other dominates under uncertainty, as ``StudyData.front``; refuse if none is able."""
+    """Return the trials that no other dominates under uncertainty, as ``StudyData.front``; refuse an empty front."""
     objectives, rows = data.study.objectives, trials.rows
     if len(rows) == 0:
         raise SelectionError(

@@ -21,7 +21,7 @@ from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.simulator import stored_simulator
-from pareto_monoped.uncertainty.samples import samples_at, variations
+from pareto_monoped.uncertainty.samples import Floats, samples_at, variations
 from pareto_monoped.uncertainty.sensitivity import (
     DEFAULT_BLOCKS,
     About,
@@ -34,8 +34,6 @@ from pareto_monoped.uncertainty.sensitivity import (
     sensitivity_of,
 )
 from pareto_monoped.uncertainty.settings import DEFAULT_SEED, Uncertainty
-
-Floats = NDArray[np.float64]
 
 WITHIN = 0.02
 """How far a variable moves to either side, as a share of its range. Our own choice: 2 percent is 4 mm of a link, as far

@@ -139,7 +139,8 @@ def share_of(settings: WeightedSettings, evaluations: int) -> int:
 def within_budget(settings: AlgorithmSettings, evaluations: int, *, given: bool, source: str) -> AlgorithmSettings:
     """Return settings whose weighted sweep reaches its last weight within the budget; others as they are.
 
-    Every weight gets an equal share of the budget unless the file has ``given`` its iterations; too many are refused.
+    Every weight gets an equal share of the budget unless the file has ``given`` its iterations; a budget that ends
+    earlier is refused.
     """
     if not isinstance(settings, WeightedSettings):
         return settings

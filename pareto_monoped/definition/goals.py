@@ -227,7 +227,7 @@ def corner_of(table: Mapping[str, Any], objectives: Objectives, *, source: str) 
 
 
 def flattened(table: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a table in which ``height_m.p05 = x``, a table within it, has the key "height_m.p05"; refuse both."""
+    """Return a table with the key "height_m.p05" for ``height_m.p05 = x``, which TOML reads as a nested table."""
     flat: dict[str, Any] = {}
     for key, value in table.items():
         inner = {name: value[name] for name in STATISTICS if name in value} if isinstance(value, Mapping) else {}

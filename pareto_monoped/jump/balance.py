@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import Floats
 from pareto_monoped.jump.calibration import Calibration
-from pareto_monoped.jump.callback import quiet
 from pareto_monoped.jump.end_stops import end_stops, slow_torque_n_m
 from pareto_monoped.jump.model import gear_efficiency, start_pose
 from pareto_monoped.jump.population import Population, prepare
+from pareto_monoped.jump.quiet import quiet
 from pareto_monoped.jump.single import Moment, constraint_forces, moments
 from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import RobotArrays

@@ -7,11 +7,9 @@ any thread. It reads and writes the state through MuJoCo's C functions.
 """
 
 import ctypes
-import threading
 import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -26,40 +24,7 @@ from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import controller
 from pareto_monoped.jump.controller import control
 from pareto_monoped.jump.controller_record import RECORD, RECORD_NUMBERS
-
-
-@dataclass(slots=True)
-class _Setting:
-    """A setting of the process that its first user makes and its last one takes back, on whatever threads."""
-
-    make: Callable[[], Any]  #: returns what was set before
-    restore: Callable[[Any], object]
-    lock: threading.Lock = field(default_factory=threading.Lock)
-    users: int = 0
-    before: Any = None
-
-    @contextmanager
-    def used(self) -> Iterator[None]:
-        with self.lock:
-            if self.users == 0:
-                self.before = self.make()
-            self.users += 1
-        try:
-            yield
-        finally:
-            with self.lock:
-                self.users -= 1
-                if self.users == 0:
-                    self.restore(self.before)
-
-
-def _set_log(wanted: tuple[bool, bool] = (False, False)) -> tuple[bool, bool]:
-    """Let MuJoCo write to standard output and to its file, or not, and return whether it did before."""
-    config = mujoco.MjLogConfig.get()
-    before = (config.logto_console, config.logto_file)
-    config.logto_console, config.logto_file = wanted
-    config.set()
-    return before
+from pareto_monoped.jump.quiet import Setting, quiet
 
 
 def _install() -> Any:
@@ -68,14 +33,7 @@ def _install() -> Any:
     return before
 
 
-_LOG, _CALLBACK = _Setting(_set_log, _set_log), _Setting(_install, mujoco.set_mjcb_control)
-
-
-@contextmanager
-def quiet() -> Iterator[None]:
-    """Let MuJoCo write neither to ``MUJOCO_LOG.TXT`` nor to standard output; the last user restores the settings."""
-    with _LOG.used():
-        yield
+_CALLBACK = Setting(_install, mujoco.set_mjcb_control)
 
 
 @contextmanager

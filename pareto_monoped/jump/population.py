@@ -11,10 +11,10 @@ from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, PAPER_CONTROL, REST
 from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
-from pareto_monoped.jump.callback import quiet
 from pareto_monoped.jump.controller_record import RECORD, RECORD_NUMBERS
 from pareto_monoped.jump.end_stops import EndStops, end_stops
 from pareto_monoped.jump.model import StartPose, start_pose
+from pareto_monoped.jump.quiet import quiet
 from pareto_monoped.jump.variations import Variations, vary_fields, vary_records
 from pareto_monoped.robot.population import RobotArrays
 from pareto_monoped.robot.units import BODIES

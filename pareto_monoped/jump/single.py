@@ -13,9 +13,9 @@ import numpy as np
 from pareto_monoped.actuator.ratiomap import Maps
 from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, Design, Floats, columns
 from pareto_monoped.jump.calibration import Calibration
-from pareto_monoped.jump.callback import quiet
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.model import mjcf
+from pareto_monoped.jump.quiet import quiet
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
 

@@ -1,6 +1,6 @@
 """The height-energy front: dominance, indicators, picking one design.
 
-Order of imports, lowest first: objectives; alternatives, front, selectors, trade_offs; pick.
+Order of imports, lowest first: objectives; front, selectors, trade_offs; pick.
 """
 
-__all__ = ["alternatives", "front", "objectives", "pick", "selectors", "trade_offs"]
+__all__ = ["front", "objectives", "pick", "selectors", "trade_offs"]

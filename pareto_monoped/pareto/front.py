@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import HEADLINE_HEIGHT_M
 from pareto_monoped.measures import Measure
-from pareto_monoped.pareto.objectives import Objectives
+from pareto_monoped.pareto.objectives import Floats, Objectives
+
+Numbers = NDArray[np.int64]
 
 
-def front_mask(
-    values: NDArray[np.float64], objectives: Objectives, feasible: NDArray[np.bool_] | None = None
-) -> NDArray[np.bool_]:
+def front_mask(values: Floats, objectives: Objectives, feasible: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
     """Find the non-dominated designs of n, in stored units, shape (n, m) -> (n,).
 
     A design is dominated if another feasible one is at least as good in every objective, and better in at least one. Of
@@ -31,7 +31,7 @@ def front_mask(
     return mask
 
 
-def _of_two(points: NDArray[np.float64]) -> NDArray[np.intp]:
+def _of_two(points: Floats) -> NDArray[np.intp]:
     """Return rows of the non-dominated points, shape (n, 2), both minimised."""
     # Sort by the first objective and, where it is equal, by the second; lexsort is stable, so ties keep their order.
     # Then a point is on the front exactly if its second objective is less than that of all points before it.
@@ -42,15 +42,11 @@ def _of_two(points: NDArray[np.float64]) -> NDArray[np.intp]:
     return front
 
 
-def _of_more(points: NDArray[np.float64]) -> NDArray[np.intp]:
+def _of_more(points: Floats) -> NDArray[np.intp]:
     """Return rows of the non-dominated points, shape (n, m), all minimised; of equal points the first."""
     import moocore
 
     return np.flatnonzero(moocore.is_nondominated(points, keep_weakly=False))
-
-
-Numbers = NDArray[np.int64]
-Floats = NDArray[np.float64]
 
 
 class GrowingFront:
@@ -129,9 +125,7 @@ class AtHeight:
         return f"{self.measure.text(self.value)} at {self.height_m:g} m"
 
 
-def best_at_height(
-    values: NDArray[np.float64], objectives: Objectives, height_m: float = HEADLINE_HEIGHT_M
-) -> AtHeight | None:
+def best_at_height(values: Floats, objectives: Objectives, height_m: float = HEADLINE_HEIGHT_M) -> AtHeight | None:
     """Return the best of the first other objective among n designs, (n, m), at a height or above; None without one."""
     if HEIGHT not in objectives.names:
         return None

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 from pareto_monoped.measures import Measure, measure
 
+Floats = NDArray[np.float64]
+
 FEWEST, MOST = 2, 3
 """How many objectives a search may have: one has no front, and four or more cannot be shown on a page."""
 
@@ -24,7 +26,7 @@ class Objectives:
         return tuple(measure(name) for name in self.names)
 
     @property
-    def signs(self) -> NDArray[np.float64]:
+    def signs(self) -> Floats:
         """-1 for each measure that is maximised, 1 for each that is minimised; times a value it is to be minimised."""
         return np.array([-1.0 if entry.direction == "maximise" else 1.0 for entry in self.measures])
 
@@ -38,7 +40,7 @@ class Objectives:
         """Unit of a hypervolume, such as "m J"; shares have none."""
         return " ".join(entry.unit for entry in self.measures if entry.unit != "1") or "1"
 
-    def minimised(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def minimised(self, values: Floats) -> Floats:
         """Return ``values``, shape (n, m) in stored units, with the sign that makes less better."""
         return np.ascontiguousarray(values * self.signs)
 
@@ -58,10 +60,6 @@ class Objectives:
 
 HEIGHT_AND_ENERGY = Objectives(names=("height_m", "energy_j"))
 """The paper's objectives, which are the default."""
-
-
-Points = NDArray[np.float64]
-"""Designs in objective space, shape (n, m)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,7 +86,7 @@ def reference_point(objectives: Objectives, given: Mapping[str, float] | None = 
     return ReferencePoint(objectives=objectives, values=tuple(0.0 if value is None else value for value in values))
 
 
-def hypervolume(points: Points, reference: ReferencePoint) -> float:
+def hypervolume(points: Floats, reference: ReferencePoint) -> float:
     """Compute the area or volume that ``points`` in stored units dominate (Zitzler and Thiele 1998)."""
     less_is_better = reference.objectives.minimised(points)
     corner = reference.objectives.minimised(np.array(reference.values))
@@ -102,7 +100,7 @@ def hypervolume(points: Points, reference: ReferencePoint) -> float:
     return float(moocore.hypervolume(np.ascontiguousarray(inside), ref=corner))
 
 
-def _area(points: Points, corner: NDArray[np.float64]) -> float:
+def _area(points: Floats, corner: Floats) -> float:
     """Compute the area between points, shape (n, 2), and a corner that is worse than all: moocore's to the last bit.
 
     The sum goes over the points by their first objective; each adds the strip that reaches from its own second

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.measures import ENERGIES, Measure, measure, nominal
-from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Floats, Objectives
 from pareto_monoped.pareto.selectors import (
     Among,
     Chooser,
@@ -32,7 +32,7 @@ from pareto_monoped.pareto.selectors import (
     phrase,
     required_fits,
 )
-from pareto_monoped.pareto.trade_offs import Floats, Scored, knee, losses, scaled, tradeoff
+from pareto_monoped.pareto.trade_offs import Scored, knee, losses, scaled, tradeoff
 
 if TYPE_CHECKING:
     from pandas import DataFrame

@@ -1,4 +1,4 @@
-"""What can be asked of a front: one of its designs, and conditions, which designs meet and messages word."""
+"""What can be asked of a front: one of its designs, under conditions; which designs meet these, and their wording."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pareto_monoped.design import VARIABLES
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.measures import GOAL_NAMES, measure
-from pareto_monoped.pareto.objectives import Objectives
+from pareto_monoped.pareto.objectives import Floats, Objectives
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -106,8 +106,6 @@ class Among:
 
 Selector = MinHeight | MaxEnergy | Within | Chooser | Among
 
-
-Floats = NDArray[np.float64]
 
 _VARIABLES = {variable.name: variable for variable in VARIABLES}
 CONDITION_NAMES: tuple[str, ...] = (*GOAL_NAMES, *_VARIABLES)

@@ -6,15 +6,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pareto_monoped.measures import nominal
-from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Floats, Objectives
 
 if TYPE_CHECKING:
     from pandas import DataFrame
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -172,7 +169,7 @@ def one_more(front: "DataFrame", trial: int, objectives: Objectives) -> OneMore:
     )
 
 
-def _step(values: NDArray[np.float64], objectives: Objectives) -> tuple[float, str]:
+def _step(values: Floats, objectives: Objectives) -> tuple[float, str]:
     """Return the step in the stored unit, and in words: a power of ten in the shown unit without a natural step."""
     entry = objectives.measures[0]
     if nominal(entry.name) in _STEPS:

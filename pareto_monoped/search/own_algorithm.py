@@ -33,7 +33,7 @@ class OwnAlgorithm(Algorithm):
     """Adapts an algorithm of the user's own, whose trials are replayed on restore."""
 
     def __init__(self, space: Space, settings: OwnSettings, seed: int, given: Any) -> None:
-        """Take an object with ``ask`` and ``tell``, or call what makes one of space and seed; none raises."""
+        """Take an object with ``ask`` and ``tell``, or call a class or function of space and seed that makes one."""
         self._space = space
         self._source = f"own algorithm {settings.name.removeprefix(OWN_ALGORITHM)!r}"
         if given is None:

@@ -44,7 +44,7 @@ def make_algorithm(study: Study, coordinates: Coordinates | None = None, own: An
 
             return OwnAlgorithm(where.space, settings, study.seed, own)
         case RandomSettings():
-            from pareto_monoped.search.seen import RandomSearch
+            from pareto_monoped.search.random_search import RandomSearch
 
             return RandomSearch(where.space, settings, study.seed)
         case SurrogateSettings():

@@ -183,7 +183,7 @@ def fitted(points: Floats, targets: Floats, weights: Floats) -> Floats:
 
 
 def _normal_equations(points: Floats, targets: Floats, weights: Floats) -> tuple[Floats, Floats]:
-    """Return weighted sums of products of pairs of terms, (t, t), right below the diagonal; and with targets."""
+    """Return weighted sums of products of pairs of terms, right below the diagonal, and of terms with targets."""
     first = cubic_terms(points[:1])
     size, half = first.shape[1], first.shape[1] // 2
     gram, right = np.zeros((size, size)), np.zeros((size, targets.shape[1]))

@@ -5,7 +5,7 @@ Their rows have their place in the running hash.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeVar, get_args
+from typing import Any, Generic, TypeVar, get_args
 
 from pareto_monoped.config import checked, parsed_json
 from pareto_monoped.errors import DatabaseError
@@ -41,9 +41,19 @@ class ExtraTable:
         return connection.execute(select).fetchall() if there else []
 
 
-def read_rows(
-    db: StudyPlace, table: ExtraTable, make: Callable[[Any, Any, str], T]
-) -> dict[Any, tuple[dict[str, Any], T]]:
+@dataclass(frozen=True, kw_only=True)  # without slots: aliases of generic classes with slots cannot be called
+class StoredResult(Generic[T]):
+    """A result, and the settings that it was simulated under."""
+
+    settings: dict[str, Any]
+    result: T
+
+
+Stored = StoredResult[Robustness]
+StoredSensitivity = StoredResult[Sensitivity]
+
+
+def read_rows(db: StudyPlace, table: ExtraTable, make: Callable[[Any, Any, str], T]) -> dict[Any, StoredResult[T]]:
     """Read settings and results by key, and check them against the running hash.
 
     ``make`` turns a key, the result's JSON values and a source for messages into a result.
@@ -55,7 +65,10 @@ def read_rows(
         raise damaged(db, findings)
     source = f"study database {str(db)!r}, its {table.what}"
     try:
-        return {key: (dict(parsed_json(text)), make(key, parsed_json(result), source)) for key, text, result in rows}
+        return {
+            key: StoredResult(settings=dict(parsed_json(text)), result=make(key, parsed_json(result), source))
+            for key, text, result in rows
+        }
     except (TypeError, ValueError, RecursionError) as error:
         raise DatabaseError(
             f"study database {str(db)!r}: its {table.what} is damaged ({type(error).__name__}: {error}); restore a copy"
@@ -65,33 +78,16 @@ def read_rows(
 ROBUSTNESS = ExtraTable(what="robustness", key="trial INTEGER")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Stored:
-    """The robustness of one trial, and the settings that it was simulated under."""
-
-    settings: dict[str, Any]
-    result: Robustness
-
-
 def read_robustness(db: StudyPlace) -> dict[int, Stored]:
     """Read the stored robustness of a study by trial; empty if it has none."""
-    found = read_rows(db, ROBUSTNESS, _result)
-    return {int(trial): Stored(settings=settings, result=result) for trial, (settings, result) in found.items()}
 
+    def result(_: Any, values: Any, source: str) -> Robustness:
+        return checked(Robustness, values, source=source, error=DatabaseError)
 
-def _result(_: Any, values: Any, source: str) -> Robustness:
-    return checked(Robustness, values, source=source, error=DatabaseError)
+    return {int(trial): stored for trial, stored in read_rows(db, ROBUSTNESS, result).items()}
 
 
 SENSITIVITY = ExtraTable(what="sensitivity", key="trial_and_factors TEXT")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StoredSensitivity:
-    """A sensitivity, and the settings that it was simulated under."""
-
-    settings: dict[str, Any]
-    result: Sensitivity
 
 
 def key_of(trial: int, about: About) -> str:
@@ -101,13 +97,11 @@ def key_of(trial: int, about: About) -> str:
 
 def read_sensitivity(db: StudyPlace) -> dict[tuple[int, About], StoredSensitivity]:
     """Read the stored sensitivities of a study by trial and kind of factors; empty if it has none."""
-    found: dict[tuple[int, About], StoredSensitivity] = {}
-    for key, (settings, result) in read_rows(db, SENSITIVITY, _sensitivity_rows_result).items():
-        found[int(key.split()[0]), result.about] = StoredSensitivity(settings=settings, result=result)
-    return found
+    found = read_rows(db, SENSITIVITY, _sensitivity)
+    return {(int(key.split()[0]), stored.result.about): stored for key, stored in found.items()}
 
 
-def _sensitivity_rows_result(key: Any, values: Any, source: str) -> Sensitivity:
+def _sensitivity(key: Any, values: Any, source: str) -> Sensitivity:
     trial, _, about = str(key).partition(" ")
     result = checked(Sensitivity, values, source=source, error=DatabaseError)
     if not trial.isdecimal() or about != result.about or about not in get_args(About):

@@ -10,10 +10,9 @@ from pydantic import Field
 
 from pareto_monoped.config import Strict
 from pareto_monoped.errors import InputError, complaint
-from pareto_monoped.uncertainty.samples import DIMENSIONS, Name
+from pareto_monoped.uncertainty.samples import DIMENSIONS, Floats, Name
 from pareto_monoped.uncertainty.settings import Uncertainty
 
-Floats = NDArray[np.float64]
 Simulate = Callable[[Floats], tuple[NDArray[np.bool_], Floats]]
 """Points in the unit cube, shape (m, d), to which of them jumped, shape (m,), and s measures, shape (m, s)."""
 

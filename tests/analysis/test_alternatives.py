@@ -7,9 +7,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from pareto_monoped.analysis.alternatives import alternatives, differences, scale_of
+from pareto_monoped.analysis.alternatives import LEAST_DISTANCE, alternatives, differences, scale_of
 from pareto_monoped.errors import SelectionError
-from pareto_monoped.pareto.alternatives import LEAST_DISTANCE
 from pareto_monoped.pareto.selectors import Condition
 from pareto_monoped.storage.reader import read_study
 from tests.study.support import made_database, made_evaluations, made_generation, made_study

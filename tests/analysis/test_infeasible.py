@@ -35,7 +35,7 @@ def test_a_run_without_a_feasible_design_names_the_limit_and_the_closest_value(t
     found = read_study(tmp_path / "s.db").trials
     jumped = found[found["state"] != "failed"]
     assert (found["state"] == "feasible").sum() == 0
-    (line,) = summary.remarks
+    (line,) = remarks(summary.data)
     assert line.startswith(
         f"no design is feasible: {len(jumped)} of {len(jumped)} miss mass_kg <= 2; the least is "
         f"{jumped['mass_kg'].min():.4g} kg"
@@ -82,7 +82,7 @@ def torn(data, tmp_path_factory):
 def test_every_command_says_why_an_infeasible_study_has_no_front(torn, tmp_path, capsys):
     """``pick`` and ``front`` said nothing of the limits."""
     path, summary = torn
-    (why,) = summary.remarks
+    (why,) = remarks(summary.data)
     stored = read_study(path)
     assert "meets all limits at once" in why
     assert why == why_no_front(stored)

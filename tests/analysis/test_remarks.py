@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 import pareto_monoped as pm
-from pareto_monoped.analysis.remarks import warnings
+from pareto_monoped.analysis.remarks import remarks, warnings
 from pareto_monoped.definition.study import load_study, study_from_dict
 from pareto_monoped.errors import StudyError
 from pareto_monoped.storage.reader import read_study
@@ -49,10 +49,10 @@ def test_a_shared_budget_reaches_the_last_weight_and_a_cut_one_says_where_it_end
     cut = run(study, tmp_path / "w.db", evaluations=24)
     assert any(
         line.startswith("the budget of 24 ended at weight 2 of 3; all weights need up to 48: continue with")
-        for line in cut.remarks
+        for line in remarks(cut.data)
     )
     whole = run(study, tmp_path / "w.db")
-    assert not any("weight" in line for line in whole.remarks)
+    assert not any("weight" in line for line in remarks(whole.data))
     assert read_study(tmp_path / "w.db").trials["height_weight"].tolist() == [0.2] * 16 + [0.5] * 16 + [0.8] * 16
 
 
@@ -65,7 +65,7 @@ def test_a_larger_budget_given_to_a_new_database_is_shared_out_and_spent(tmp_pat
     file, db = written(tmp_path, 48, [0.2, 0.5, 0.8]), tmp_path / "w.db"
     larger = run(load_study(file), db, evaluations=96)
     assert (larger.evaluations, larger.stop_reason, iterations_in(db)) == (96, "budget", 4)
-    assert not any("iterations" in line for line in larger.remarks)
+    assert not any("iterations" in line for line in remarks(larger.data))
     # The file goes on with its own database, whatever budget it says.
     assert run(load_study(file), db).evaluations == 96
     assert run(load_study(written(tmp_path, 72, [0.2, 0.5, 0.8])), db).new_evaluations == 0
@@ -75,7 +75,7 @@ def test_a_larger_budget_given_to_a_stored_database_says_that_its_iterations_are
     """``resume`` added nothing, and the file was refused for a key that it does not have."""
     db = tmp_path / "w.db"
     first = run(load_study(written(tmp_path, 48, [0.2, 0.5, 0.8])), db)
-    assert not any("iterations" in line for line in first.remarks)
+    assert not any("iterations" in line for line in remarks(first.data))
     told = (
         "of 96 evaluations, 48 were made: each weight's iterations were fixed at 2 when the database was made; for 4, "
         "run into a new one (--db), with iterations left out of the study file"
@@ -85,7 +85,7 @@ def test_a_larger_budget_given_to_a_stored_database_says_that_its_iterations_are
         resume(db, evaluations=96),
         run(load_study(written(tmp_path, 96, [0.2, 0.5, 0.8])), db),
     ):
-        assert (more.evaluations, more.remarks[0]) == (48, told)
+        assert (more.evaluations, remarks(more.data)[0]) == (48, told)
     with pytest.raises(StudyError, match=r"study\.algorithm\.iterations: 2 -> 3\)"):
         run(load_study(written(tmp_path, 96, [0.2, 0.5, 0.8], "iterations = 3\n")), db)
 

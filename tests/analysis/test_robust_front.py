@@ -7,12 +7,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from pareto_monoped.analysis.alternatives import alternatives
+from pareto_monoped.analysis.alternatives import LEAST_DISTANCE, alternatives
 from pareto_monoped.analysis.robustness import robust_front, robust_trials
 from pareto_monoped.definition.goals import objectives_of
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.measures import MEASURE_NAMES
-from pareto_monoped.pareto.alternatives import LEAST_DISTANCE
 from pareto_monoped.pareto.pick import pick
 from pareto_monoped.pareto.selectors import Among, Condition
 from pareto_monoped.storage.extra_rows import Stored

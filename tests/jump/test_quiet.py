@@ -9,8 +9,8 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.jump.audit import audit
-from pareto_monoped.jump.callback import quiet
 from pareto_monoped.jump.evaluate import Evaluator
+from pareto_monoped.jump.quiet import quiet
 from pareto_monoped.jump.single import simulate
 from tests.jump.robots import wild_calibration
 

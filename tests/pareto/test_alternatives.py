@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.pareto.alternatives import LEAST_DISTANCE, distances, most_different, prices
+from pareto_monoped.analysis.alternatives import LEAST_DISTANCE, distances, most_different, prices
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 from tests.pareto.fronts import THREE
 
