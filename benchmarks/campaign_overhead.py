@@ -22,7 +22,7 @@ from pathlib import Path
 
 from cluster_overhead import MOST_OVERHEAD, dask_here, processor_s
 
-from pareto_monoped.compute.threads import cores
+from pareto_monoped.compute.chunks import cores
 from pareto_monoped.storage.reader import read_study
 
 _WAITING_S = 10.0

@@ -24,7 +24,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from pareto_monoped.analysis.robustness import robust
-from pareto_monoped.compute.threads import cores
+from pareto_monoped.compute.chunks import cores
 from pareto_monoped.definition.study import study_from_dict
 from pareto_monoped.jump.peers import cluster
 from pareto_monoped.storage.extra_rows import read_robustness

@@ -25,7 +25,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from pareto_monoped.compute.threads import cores
+from pareto_monoped.compute.chunks import cores
 from pareto_monoped.definition.algorithms import DEFAULT_ALGORITHM
 from pareto_monoped.definition.study import Study
 from pareto_monoped.study.run import run

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from pareto_monoped.analysis.robustness import robust
-from pareto_monoped.compute.threads import cores
+from pareto_monoped.compute.chunks import cores
 from pareto_monoped.design import NAMES
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.simulator import stored_simulator

@@ -32,9 +32,8 @@ from numpy.typing import NDArray
 from search_overhead import Timed
 
 from pareto_monoped.analysis.robustness import robust
-from pareto_monoped.compute.chunks import LEAST_TASK_S
+from pareto_monoped.compute.chunks import LEAST_TASK_S, cores
 from pareto_monoped.compute.crew import Crew, Member, Staff
-from pareto_monoped.compute.threads import cores
 from pareto_monoped.definition.study import Study
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.peers import cluster

@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 from search_reference import FOLDER, corner_of, read
 
-from pareto_monoped.compute.threads import cores
+from pareto_monoped.compute.chunks import cores
 from pareto_monoped.definition.study import Study, study_from_dict
 from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 from pareto_monoped.pareto.front import front_mask

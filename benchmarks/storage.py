@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 from saturation import drawn
 
-from pareto_monoped.compute.threads import cores
+from pareto_monoped.compute.chunks import cores
 from pareto_monoped.definition.algorithms import RandomSettings
 from pareto_monoped.definition.study import Study
 from pareto_monoped.jump.evaluate import Evaluations

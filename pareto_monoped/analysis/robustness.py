@@ -10,8 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from pareto_monoped.compute.chunks import AT_ONCE, in_turn
-from pareto_monoped.compute.threads import cores
+from pareto_monoped.compute.chunks import AT_ONCE, cores, in_turn
 from pareto_monoped.design import NAMES
 from pareto_monoped.errors import InputError, SelectionError, StudyError, complaint
 from pareto_monoped.jump.evaluate import Evaluator

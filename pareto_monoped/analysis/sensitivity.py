@@ -8,7 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from pareto_monoped.analysis.robustness import refuse_other_jumps
-from pareto_monoped.compute.threads import cores
+from pareto_monoped.compute.chunks import cores
 from pareto_monoped.definition.variables import Bounds
 from pareto_monoped.design import NAMES, RATIOS, VARIABLES, Variable
 from pareto_monoped.errors import InputError, SelectionError, complaint

@@ -14,7 +14,7 @@ from pareto_monoped.actuator.motors import motor_source, motor_values, stored_mo
 from pareto_monoped.actuator.ratiomap import ActuatorMap, JointMaps
 from pareto_monoped.actuator.search import map_of
 from pareto_monoped.api.given import one_design, own_calibration, with_motors
-from pareto_monoped.compute.threads import cores
+from pareto_monoped.compute.chunks import cores
 from pareto_monoped.definition.given import count_of
 from pareto_monoped.design import CONTROL, DEFAULT_RULES, NAMES, PAPER_MOTOR, Design, RuleSet, columns
 from pareto_monoped.errors import CalibrationError, DesignError, MotorError, complaint

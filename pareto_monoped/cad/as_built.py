@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pareto_monoped.actuator.ratiomap import Maps, joint_maps
-from pareto_monoped.cad.product import Pose
+from pareto_monoped.cad.assembly import Pose
 from pareto_monoped.design import Design
 from pareto_monoped.errors import DesignError
 from pareto_monoped.jump.calibration import Calibration

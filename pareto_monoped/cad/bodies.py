@@ -12,8 +12,8 @@ import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.cad.assembly import Instance
 from pareto_monoped.cad.check.retention import Slab, slabs, threads
-from pareto_monoped.cad.product import Instance
 from pareto_monoped.geometry.roles import FASTENERS, JointKind, Role
 
 Bools = NDArray[np.bool_]

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import Actuator
-from pareto_monoped.cad.product import unit_frame
+from pareto_monoped.cad.assembly import unit_frame
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.shapes import Circle, Pattern

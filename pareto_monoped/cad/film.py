@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.cad.assembly import Pose, body_frames, instances, shift
 from pareto_monoped.cad.picture.drawing import Faces, Shown, View, draw_faces, faces_of
-from pareto_monoped.cad.product import Pose, body_frames, instances, shift
 from pareto_monoped.cad.shape.meshes import shell_of
 from pareto_monoped.errors import InputError, SimulationError, complaint, require_extra
 from pareto_monoped.files import replacing

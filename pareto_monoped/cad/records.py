@@ -10,7 +10,6 @@ from typing import Any
 
 from pareto_monoped.actuator.motors import stored_motor
 from pareto_monoped.cad.as_built import as_built, built_of
-from pareto_monoped.cad.export import simulated_jumps
 from pareto_monoped.cad.jobs import Job
 from pareto_monoped.cad.write.design_record import MADE_BY, design_record
 from pareto_monoped.cad.write.folder import ALWAYS, FILES, RECORD, chosen_formats
@@ -185,6 +184,8 @@ def _contradiction(record: Mapping[str, Any], job: Job, *, same_version: bool) -
         wrong = difference(found, expected, rel_tolerance=REL_TOLERANCE)
         if wrong is not None:
             return wrong
+        from pareto_monoped.cad.export import simulated_jumps
+
         designs = {"searched": job.design, "as_built": _design(expected["as_built"])}
         simulated = simulated_jumps(designs, job.maps(), job.calibration)
         return difference(jumps, simulated, rel_tolerance=_JUMP_REL_TOLERANCE, field="jumps")

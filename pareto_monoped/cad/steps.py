@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pareto_monoped.cad.assembly import ACTUATOR_UNITS
 from pareto_monoped.cad.bodies import DIRECTIONS, Blocking, Bools
-from pareto_monoped.cad.product import ACTUATOR_UNITS
 
 Members = frozenset[int]
 

@@ -10,9 +10,9 @@ from dataclasses import dataclass, field, fields
 
 from pareto_monoped.campaign.folder import NO_FEASIBLE_DESIGN, Place, State, Stored, is_ended, stored_state
 from pareto_monoped.campaign.worker import Advanced, Ended, Noted, run_study
+from pareto_monoped.compute.chunks import cores as cores_here
 from pareto_monoped.compute.crew import LostError
 from pareto_monoped.compute.processes import GRACE_S, Processes
-from pareto_monoped.compute.threads import cores as cores_here
 from pareto_monoped.errors import ParetoMonopedError
 from pareto_monoped.storage.lock import holder
 from pareto_monoped.study.session import Interrupt

@@ -100,7 +100,7 @@ def export(
         from pareto_monoped.analysis.remarks import refuse_empty
         from pareto_monoped.cad.jobs import case_job, front_jobs, trial_job
         from pareto_monoped.cad.records import record_job
-        from pareto_monoped.compute.threads import cores
+        from pareto_monoped.compute.chunks import cores
 
         names = None if formats is None else [name.strip() for name in formats.split(",")]
         dropped = {name for name, out in (("pdf", no_drawings), ("assembly", no_assembly)) if out}

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.ratiomap import Maps
-from pareto_monoped.compute.chunks import pace_of, spread
-from pareto_monoped.compute.threads import task_threads
+from pareto_monoped.compute.chunks import pace_of, spread, task_threads
 from pareto_monoped.design import CONTROL, DEFAULTS, NAMES, PAPER_NAMES, RATIOS, Floats, columns, complete
 from pareto_monoped.jump.balance import balance_errors
 from pareto_monoped.jump.calibration import Calibration

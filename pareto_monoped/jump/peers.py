@@ -14,10 +14,10 @@ from threadpoolctl import threadpool_info
 
 from pareto_monoped import __version__
 from pareto_monoped.actuator.search import map_for
+from pareto_monoped.compute.chunks import cores, set_task_threads
 from pareto_monoped.compute.cluster import DaskWorkers
 from pareto_monoped.compute.crew import Crew, Limits, Staff
 from pareto_monoped.compute.processes import LocalProcesses
-from pareto_monoped.compute.threads import cores, set_task_threads
 from pareto_monoped.design import LOWER, PAPER_CASES, PAPER_MOTOR, UPPER, complete
 from pareto_monoped.errors import EXTRAS, InputError
 from pareto_monoped.errors import complaint as complaint_of

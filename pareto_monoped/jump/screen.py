@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.ratiomap import Maps
-from pareto_monoped.compute.chunks import pace_of, spread
-from pareto_monoped.compute.threads import task_threads
+from pareto_monoped.compute.chunks import pace_of, spread, task_threads
 from pareto_monoped.design import CONTROL, Floats, columns
 from pareto_monoped.jump.audit import LIMITS, Jumps, perturbed
 from pareto_monoped.jump.balance import balanced

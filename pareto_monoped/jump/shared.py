@@ -15,8 +15,7 @@ from pareto_monoped.actuator.motors import motor_values, stored_motor
 from pareto_monoped.actuator.ratiomap import JointMaps, Maps, joint_maps
 from pareto_monoped.actuator.search import map_of
 from pareto_monoped.actuator.settings import ActuatorSettings
-from pareto_monoped.compute.chunks import Pace, pace_of, spread
-from pareto_monoped.compute.threads import task_threads
+from pareto_monoped.compute.chunks import Pace, pace_of, spread, task_threads
 from pareto_monoped.design import Floats, complete
 from pareto_monoped.errors import InputError
 from pareto_monoped.jump.calibration import Calibration, calibration_of, calibration_values

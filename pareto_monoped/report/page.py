@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from pareto_monoped import __version__
 from pareto_monoped.analysis.choices import WORDS
-from pareto_monoped.compute.threads import cores
+from pareto_monoped.compute.chunks import cores
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, PAPER_CASES, VARIABLES, in_use
 from pareto_monoped.errors import StudyError
 from pareto_monoped.files import write_text

@@ -176,7 +176,8 @@ class ServerConnection(Connection):
     def __init__(self, server: Server, **options: Any) -> None:
         """Open it, with execution options of SQLAlchemy."""
         self._session = _engine(server).connect().execution_options(**options)
-        driver: psycopg.Connection[Any] = self._session.connection.driver_connection  # type: ignore[assignment]
+        driver = self._session.connection.driver_connection
+        assert isinstance(driver, psycopg.Connection)
         driver.adapters.register_dumper(float, _Number)
         driver.adapters.register_loader("timestamp", _Date)
         self._driver = driver
@@ -428,7 +429,8 @@ def failure(server: Server, error: BaseException, *, open_before: bool = False) 
         )
     for pattern, words in _AT_THE_DOOR.items():
         if re.search(pattern, text):
-            return DatabaseError(start + words.format(text=text))
+            message = start + words.format(text=text)
+            return DatabaseError(message)
     if gone:
         return ServerError(f"{start}the server does not answer ({text}); start it, or check host and port")
     if isinstance(error, psycopg.ProgrammingError) and state is None:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from pymoo.core.problem import Problem
 
-from pareto_monoped.compute.threads import cores
+from pareto_monoped.compute.chunks import cores
 from pareto_monoped.definition.given import count_of
 from pareto_monoped.definition.study import Study
 from pareto_monoped.search.algorithm import Floats

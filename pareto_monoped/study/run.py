@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from typing import Any
 
-from pareto_monoped.compute.threads import cores
+from pareto_monoped.compute.chunks import cores
 from pareto_monoped.definition import provenance
 from pareto_monoped.definition.algorithms import WeightedSettings, share_of
 from pareto_monoped.definition.study import Study

@@ -1,8 +1,9 @@
 import pytest
 
 from pareto_monoped.actuator.search import map_for
+from pareto_monoped.cad.assembly import Pose
 from pareto_monoped.cad.export import export_design
-from pareto_monoped.cad.product import Pose, build_product
+from pareto_monoped.cad.product import build_product
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.robot.build import build_robot

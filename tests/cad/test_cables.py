@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from pareto_monoped.actuator.search import map_for
+from pareto_monoped.cad.assembly import Pose, body_frames
 from pareto_monoped.cad.cables import ENCODER_CABLE_M, cables, rounded, rounded_length_mm
-from pareto_monoped.cad.product import Listed, Pose, body_frames
+from pareto_monoped.cad.product import Listed
 from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.cad.write.assembly_pack import _cables
 from pareto_monoped.cad.write.tables import cables_csv, hardware

@@ -9,9 +9,10 @@ import pytest
 
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
+from pareto_monoped.cad.assembly import Pose
 from pareto_monoped.cad.check.run import run_checks
 from pareto_monoped.cad.export import export_design
-from pareto_monoped.cad.product import Pose, build_product
+from pareto_monoped.cad.product import build_product
 from pareto_monoped.cad.write import files
 from pareto_monoped.cad.write.meshes import visuals
 from pareto_monoped.design import PAPER_CASES

@@ -4,11 +4,11 @@ import dataclasses
 
 import pytest
 
+from pareto_monoped.cad.assembly import instances
 from pareto_monoped.cad.check import free_motion, screws
 from pareto_monoped.cad.check.free_motion import in_gear_cycle
 from pareto_monoped.cad.check.retention import loose_parts
 from pareto_monoped.cad.picture.scenes import assembly_scene
-from pareto_monoped.cad.product import instances
 from pareto_monoped.cad.write.meshes import colliders, visuals
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.cad.product import pulled_apart
+from pareto_monoped.cad.assembly import pulled_apart
 
 sizes = st.floats(1.0, 20.0)
 places = st.floats(-40.0, 40.0)

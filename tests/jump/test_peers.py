@@ -11,7 +11,7 @@ from importlib.metadata import PackageNotFoundError
 import numpy as np
 import pytest
 
-from pareto_monoped.compute.threads import cores, task_threads
+from pareto_monoped.compute.chunks import cores, task_threads
 from pareto_monoped.errors import InputError
 from pareto_monoped.jump import peers
 from pareto_monoped.jump.calibration import calibration_names

@@ -12,6 +12,7 @@ import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.cad.assembly import Instance, Matrix, Pose, body_frames, instances, turn_y
 from pareto_monoped.cad.check.overlap import TOUCH_MM, Overlap, PlacedMesh, boxes_meet, deepest, near, overlap_of
 from pareto_monoped.cad.check.result import (
     DEPTH_MM,
@@ -23,7 +24,7 @@ from pareto_monoped.cad.check.result import (
     Finding,
     worst_of,
 )
-from pareto_monoped.cad.product import Instance, Matrix, Pose, Product, body_frames, instances, turn_y
+from pareto_monoped.cad.product import Product
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
 

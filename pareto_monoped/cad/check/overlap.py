@@ -7,8 +7,9 @@ import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.cad.assembly import Instance, Matrix
 from pareto_monoped.cad.check.result import OVERLAP, Check, Finding, Limit, worst_of
-from pareto_monoped.cad.product import Instance, Matrix, Product
+from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.shape.meshes import TOLERANCE_MM, cross_section, placed
 from pareto_monoped.cad.shape.outlines import all_polygons, centres_mm
 from pareto_monoped.geometry.features import CountersunkHead

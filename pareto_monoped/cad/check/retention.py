@@ -18,8 +18,8 @@ import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.cad.assembly import Instance, Pose, instances
 from pareto_monoped.cad.check.result import LOOSE, Check, count_of
-from pareto_monoped.cad.product import Instance, Pose, instances
 from pareto_monoped.cad.shape.meshes import cross_section
 from pareto_monoped.geometry.features import CountersunkHead
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear

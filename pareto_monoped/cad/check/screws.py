@@ -11,9 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.cad.assembly import Instance
 from pareto_monoped.cad.check.result import BOLT_OFFSET, BOLT_PARTS, SEATS, Check, Finding, count_of, worst_of
 from pareto_monoped.cad.check.retention import cylinders, thread_diameter_mm
-from pareto_monoped.cad.product import Instance, Product
+from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.shape.outlines import centres_mm
 from pareto_monoped.geometry.features import Cone, CountersunkHead, Hole
 from pareto_monoped.geometry.parts import Part

@@ -12,6 +12,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from pareto_monoped.cad.assembly import Instance, Pose, body_frames, pulled_apart
 from pareto_monoped.cad.cables import Cable, cables, rounded
 from pareto_monoped.cad.drawing.assembly_views import (
     FROM_FRONT,
@@ -33,7 +34,7 @@ from pareto_monoped.cad.drawing.bores import number
 from pareto_monoped.cad.drawing.dimension import Tag, place_tags
 from pareto_monoped.cad.drawing.paper import Paper
 from pareto_monoped.cad.drawing.sheet import A0, A1, A2, SCALES, Size, compose, scale_text, table
-from pareto_monoped.cad.product import Instance, Pose, Product, UniquePart, body_frames, pulled_apart
+from pareto_monoped.cad.product import Product, UniquePart
 from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.geometry.roles import Role, Visibility
 

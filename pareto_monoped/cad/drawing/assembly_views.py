@@ -15,12 +15,13 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
+from pareto_monoped.cad.assembly import Pose, body_frames
 from pareto_monoped.cad.drawing.dimension import spread
 from pareto_monoped.cad.drawing.paper import NARROW_MM, Paper
 from pareto_monoped.cad.drawing.profile import polygons
 from pareto_monoped.cad.drawing.section import hatch
 from pareto_monoped.cad.drawing.sheet import scale_text
-from pareto_monoped.cad.product import Pose, Product, body_frames
+from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.geometry.roles import SCREWS, Role, Visibility
 

@@ -11,10 +11,11 @@ import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.cad.assembly import ACTUATOR_UNITS, Instance, body_frames, pulled_apart, unit_frame
 from pareto_monoped.cad.bodies import Blocking
 from pareto_monoped.cad.picture.drawing import Body, Faces, Shown, View, draw, draw_faces, faces_of
 from pareto_monoped.cad.picture.labels import Row, colour, labelled, numbered
-from pareto_monoped.cad.product import ACTUATOR_UNITS, Instance, Product, body_frames, pulled_apart, unit_frame
+from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.shape.meshes import Mesh, mesh_from, placed, shell_of
 from pareto_monoped.cad.steps import Step
 from pareto_monoped.geometry.roles import Visibility

@@ -7,12 +7,13 @@ import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
+from pareto_monoped.cad.assembly import Instance, instances
 from pareto_monoped.cad.bodies import Blocking, blocking_of
 from pareto_monoped.cad.cables import cables
 from pareto_monoped.cad.check.retention import POSE
 from pareto_monoped.cad.picture.drawing import png
 from pareto_monoped.cad.picture.scenes import stage_of, step_picture
-from pareto_monoped.cad.product import Instance, Listed, instances
+from pareto_monoped.cad.product import Listed
 from pareto_monoped.cad.shape.meshes import Mesh, mesh_from
 from pareto_monoped.cad.shape.outlines import all_polygons
 from pareto_monoped.cad.steps import Addition, Step, steps_of, stuck, take_apart, titled

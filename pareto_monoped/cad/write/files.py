@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from pareto_monoped.cad.assembly import ACTUATOR_UNITS
 from pareto_monoped.cad.drawing import drawings
 from pareto_monoped.cad.kernel import client as kernel
 from pareto_monoped.cad.picture import scenes
 from pareto_monoped.cad.picture.drawing import png
-from pareto_monoped.cad.product import ACTUATOR_UNITS, Product
+from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.write import dxf, meshes, mjcf, urdf
 from pareto_monoped.cad.write.dxf import stand_files
 from pareto_monoped.cad.write.folder import safe, write

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import Actuator
-from pareto_monoped.cad.product import Product, unit_frame
+from pareto_monoped.cad.assembly import unit_frame
+from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.shape.meshes import Mesh, joined, mesh_of, placed
 from pareto_monoped.geometry.roles import Role, Visibility
 

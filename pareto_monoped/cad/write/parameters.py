@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pareto_monoped.cad.product import ACTUATOR_UNITS, Product, UniquePart
+from pareto_monoped.cad.assembly import ACTUATOR_UNITS
+from pareto_monoped.cad.product import Product, UniquePart
 from pareto_monoped.geometry.features import CountersunkHead, Hole, ShaftEnd
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Pattern, Shape

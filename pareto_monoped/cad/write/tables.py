@@ -13,9 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pareto_monoped.cad.assembly import ACTUATOR_UNITS
 from pareto_monoped.cad.cables import TIE, TIE_DESIGNATION, Cable, cables
 from pareto_monoped.cad.check.result import Check
-from pareto_monoped.cad.product import ACTUATOR_UNITS, Listed, Product, part_file_name
+from pareto_monoped.cad.product import Listed, Product, part_file_name
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import FASTENERS, Role
 from pareto_monoped.geometry.tightening import LOCKER

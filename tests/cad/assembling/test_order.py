@@ -7,9 +7,9 @@ import pytest
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.as_built import as_built
+from pareto_monoped.cad.assembly import Instance, instances
 from pareto_monoped.cad.bodies import KEY_REACH_MM, blocking_of
 from pareto_monoped.cad.check.retention import POSE
-from pareto_monoped.cad.product import Instance, instances
 from pareto_monoped.cad.shape.meshes import mesh_of, placed
 from pareto_monoped.cad.steps import steps_of, stuck, take_apart
 from pareto_monoped.design import PAPER_CASES

@@ -7,10 +7,11 @@ import manifold3d as m3
 import numpy as np
 import pytest
 
+from pareto_monoped.cad.assembly import Pose, body_frames, instances
 from pareto_monoped.cad.check import free_motion
 from pareto_monoped.cad.check.overlap import PlacedMesh
 from pareto_monoped.cad.check.result import FREE_MOTION
-from pareto_monoped.cad.product import Pose, body_frames, build_product, instances
+from pareto_monoped.cad.product import build_product
 from pareto_monoped.leg.stops import hip_stop, knee_stop
 from pareto_monoped.robot.build import build_robot
 from tests.cad.check.faults import bare, shifted, with_unit

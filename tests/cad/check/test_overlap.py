@@ -5,9 +5,10 @@ import dataclasses
 import numpy as np
 import pytest
 
+from pareto_monoped.cad.assembly import Instance, turn_z
 from pareto_monoped.cad.check import overlap
 from pareto_monoped.cad.check.result import OVERLAP
-from pareto_monoped.cad.product import Instance, UniquePart, turn_z
+from pareto_monoped.cad.product import UniquePart
 from pareto_monoped.cad.shape.meshes import mesh_of
 from pareto_monoped.geometry.gears import InternalGear
 from pareto_monoped.geometry.parts import Part, Prism

@@ -7,9 +7,9 @@ import pytest
 
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
+from pareto_monoped.cad.assembly import Pose, instances
 from pareto_monoped.cad.check import retention
 from pareto_monoped.cad.check.retention import loose_parts
-from pareto_monoped.cad.product import Pose, instances
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.geometry.roles import SCREWS, Joint, JointKind
 from pareto_monoped.geometry.screws import LENGTHS_MM

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
 
+from pareto_monoped.cad.assembly import shift, turn_z
 from pareto_monoped.cad.kernel.client import StepAssembly, StepPlacement
 from pareto_monoped.cad.kernel.solids import solid_of
 from pareto_monoped.cad.kernel.step import assembly_step, part_step, shapes_in, spliced, tree_step
-from pareto_monoped.cad.product import shift, turn_z
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle, Pattern
