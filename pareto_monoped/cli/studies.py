@@ -2,9 +2,9 @@
 
 import json
 import textwrap
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -211,14 +211,18 @@ def _said(text: str) -> None:
 def _finish(summary: "RunSummary", as_json: bool) -> int:
     """Say how a run ended; returns the exit code."""
     code = 130 if summary.stop_reason == "interrupted" else 0
+    from pareto_monoped.analysis.remarks import remarks
+
+    found = remarks(summary.data)
     if as_json:
-        echo(json.dumps({"event": "end"} | asdict(summary) | {"db": str(summary.db)}))
+        facts = {one.name: getattr(summary, one.name) for one in fields(summary) if one.name != "data"}
+        echo(json.dumps({"event": "end"} | facts | {"db": str(summary.db), "remarks": found}))
     else:
-        _print_end(summary)
+        _print_end(summary, found)
     return code
 
 
-def _print_end(summary: "RunSummary") -> None:
+def _print_end(summary: "RunSummary", found: Sequence[str]) -> None:
     from pareto_monoped.definition.study import NO_STRENGTH
 
     _say(
@@ -231,9 +235,6 @@ def _print_end(summary: "RunSummary") -> None:
     )
     strength = () if summary.strength else (NO_STRENGTH,)
     # Without a front, the first remark says why there is none.
-    from pareto_monoped.analysis.remarks import remarks
-
-    found = remarks(summary.data)
     said = (*strength, *found) if summary.front_size else (*found, *strength)
     for line in said:
         note(line)

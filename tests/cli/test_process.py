@@ -103,7 +103,7 @@ def test_a_drawing_library_that_does_not_exist_ends_no_command(tmp_path):
 LATE = """
 import os, signal
 from pareto_monoped import cli
-from pareto_monoped.cli import net
+from pareto_monoped.cli import process
 
 def report(error):
     os.kill(os.getpid(), signal.SIGTERM)
@@ -112,7 +112,7 @@ def report(error):
 def command(**_):
     raise ValueError
 
-net.report = report
+process.report = report
 cli.cli.main = command
 cli.main()
 """
