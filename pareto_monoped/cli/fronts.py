@@ -75,7 +75,8 @@ def front(
     Under other objectives than its own, a study's front is what its trials happen to hold: they were not searched for,
     and the audit has not seen all of them.
     """
-    from pareto_monoped.storage.front_reader import foreign_note, read_front
+    from pareto_monoped.storage.front_reader import read_front
+    from pareto_monoped.storage.kept_front import foreign_note
     from pareto_monoped.storage.reader import read_study
 
     if objectives is None and not include_all:

@@ -33,7 +33,7 @@ def verify(db: StudyPlace, simulate: int, workers: int | None, processes: int | 
     from pareto_monoped.analysis.verify import require_sound
     from pareto_monoped.analysis.verify import verify as verify_study
     from pareto_monoped.compute.chunks import cores
-    from pareto_monoped.storage.front_reader import foreign_note
+    from pareto_monoped.storage.kept_front import foreign_note
     from pareto_monoped.storage.seals import UNSEALED
 
     place = options.where(processes, scheduler, workers)

@@ -124,7 +124,7 @@ def resume(
 def status(db: StudyPlace, as_json: bool) -> None:
     """Show a study's progress, hypervolume, speed and settings."""
     from pareto_monoped.definition.study import NO_STRENGTH
-    from pareto_monoped.storage.front_reader import foreign_note
+    from pareto_monoped.storage.kept_front import foreign_note
     from pareto_monoped.storage.status import status as study_status
 
     facts = study_status(db)

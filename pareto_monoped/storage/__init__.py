@@ -1,7 +1,7 @@
 """Stored studies: trials, checkpoints and results in SQLite files or on a PostgreSQL server, and their integrity.
 
 Order of imports, lowest first: address, columns, connection; base; lock, server; file; place; kept_front, meta, seals;
-extra_rows, optuna_tables, reader; front_reader; status, store; optuna_check.
+extra_rows, optuna_tables, reader; front_reader, status, store; optuna_check.
 """
 
 __all__ = [

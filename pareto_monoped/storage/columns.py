@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.design import DEFAULTS, PAPER_NAMES, VARIABLES
-from pareto_monoped.jump.evaluate import Evaluations
 from pareto_monoped.measures import MEASURES, measure
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
-from pareto_monoped.search.scoring import Judgement
 
 if TYPE_CHECKING:
     from pareto_monoped.definition.study import Study
+    from pareto_monoped.jump.evaluate import Evaluations
+    from pareto_monoped.search.scoring import Judgement
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,8 +105,8 @@ class Generation:
     first_trial: int  #: number of the first of these trials
     designs: NDArray[np.float64]  #: shape (n, number of variables)
     #: evaluations, judgement: of these designs
-    evaluations: Evaluations
-    judgement: Judgement
+    evaluations: "Evaluations"
+    judgement: "Judgement"
     height_weight: float | None  #: weight of the first objective in a weighted search; None for other searches
     #: The algorithm's state once it knows the scores of the whole generation; None while some are missing
     state: Mapping[str, Any] | None

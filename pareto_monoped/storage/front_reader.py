@@ -8,27 +8,11 @@ from pareto_monoped.definition.study import Study, study_from_dict
 from pareto_monoped.design import VARIABLES, Variable, in_use
 from pareto_monoped.storage.base import undamaged
 from pareto_monoped.storage.connection import Connection
-from pareto_monoped.storage.kept_front import KeptFront, kept_row, rows_of
+from pareto_monoped.storage.kept_front import KeptFront, foreign_count, kept_row, rows_of
 from pareto_monoped.storage.meta import StudyMeta, meta_of_rows
 from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.reader import read_study, trial_frame, with_agility, with_motors
 from pareto_monoped.storage.seals import ROWS, damaged, has_seals, read_seals
-
-
-def foreign_count(connection: Connection) -> int:
-    """Count how many of Optuna's trials are not of this package."""
-    (more,) = connection.execute(
-        "SELECT (SELECT count(*) FROM trials) - (SELECT count(*) FROM monoped_trials)"
-    ).fetchone()
-    return max(0, int(more))
-
-
-def foreign_note(count: int) -> str:
-    """Return the warning about foreign trials."""
-    what, them = ("1 of Optuna's trials is", "it") if count == 1 else (f"{count} of Optuna's trials are", "them")
-    return (
-        f"{what} not of this package: ignored here, but Optuna's best_trials may have {them}; 'repair DB' drops {them}"
-    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -140,3 +140,19 @@ def front_trials(db: StudyPlace) -> dict[int, str]:
         rows = rows_of(connection, ("trial", *objectives.names), parsed_json(numbers))
     rows.sort(key=lambda row: (row[1], row[0]))
     return {row[0]: objectives.text(row[1:]) for row in rows}
+
+
+def foreign_count(connection: Connection) -> int:
+    """Count how many of Optuna's trials are not of this package."""
+    (more,) = connection.execute(
+        "SELECT (SELECT count(*) FROM trials) - (SELECT count(*) FROM monoped_trials)"
+    ).fetchone()
+    return max(0, int(more))
+
+
+def foreign_note(count: int) -> str:
+    """Return the warning about foreign trials."""
+    what, them = ("1 of Optuna's trials is", "it") if count == 1 else (f"{count} of Optuna's trials are", "them")
+    return (
+        f"{what} not of this package: ignored here, but Optuna's best_trials may have {them}; 'repair DB' drops {them}"
+    )

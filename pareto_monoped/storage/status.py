@@ -12,8 +12,7 @@ from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import best_at_height
 from pareto_monoped.pareto.objectives import hypervolume
 from pareto_monoped.storage.connection import Connection
-from pareto_monoped.storage.front_reader import foreign_count
-from pareto_monoped.storage.kept_front import STATES, KeptFront, rows_of
+from pareto_monoped.storage.kept_front import STATES, KeptFront, foreign_count, rows_of
 from pareto_monoped.storage.meta import StudyMeta, meta_of_rows
 from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.seals import has_seals

@@ -17,8 +17,7 @@ from pareto_monoped.search.space import Coordinates, plain_coordinates
 from pareto_monoped.storage.base import FORMAT, StudyLock, check
 from pareto_monoped.storage.columns import LATER, Generation, columns_of
 from pareto_monoped.storage.extra_rows import ExtraTable, Row
-from pareto_monoped.storage.front_reader import foreign_count
-from pareto_monoped.storage.kept_front import FRONT, KeptFront
+from pareto_monoped.storage.kept_front import FRONT, KeptFront, foreign_count
 from pareto_monoped.storage.meta import StudyMeta, strict_json
 from pareto_monoped.storage.optuna_tables import (
     KNOWN_SCHEMAS,

@@ -14,7 +14,7 @@ from pareto_monoped.errors import StudyError
 from pareto_monoped.pareto.objectives import hypervolume
 from pareto_monoped.search.registry import make_algorithm
 from pareto_monoped.storage.base import BY_NAME, StudyLock
-from pareto_monoped.storage.front_reader import foreign_note
+from pareto_monoped.storage.kept_front import foreign_note
 from pareto_monoped.storage.meta import StudyMeta
 from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.reader import StudyData, read_study

@@ -3,8 +3,8 @@
 import pytest
 
 from pareto_monoped import cli
+from tests.analysis.test_verify import path, whole  # noqa: F401  fixtures
 from tests.study.support import UNSEALED, change
-from tests.study.test_verify import path, whole  # noqa: F401  fixtures
 
 
 def ended(capsys, *words):
