@@ -1,6 +1,23 @@
-"""``python -m pareto_monoped``: the same as the console script."""
+"""``python -m pareto_monoped`` and the console script: an interrupt while modules are imported ends in one line."""
 
-from pareto_monoped.cli import main
+import os
+import signal
+from types import FrameType
+
+
+def _interrupted(number: int, frame: FrameType | None) -> None:
+    os.write(2, b"interrupted\n")
+    os._exit(130)
+
+
+def main() -> None:
+    """Run the command line; ``cli.process`` takes over the signals."""
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, _interrupted)
+    from pareto_monoped.cli import main as run_command
+
+    run_command()
+
 
 if __name__ == "__main__":
     main()

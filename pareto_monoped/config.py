@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
 from pareto_monoped.errors import DiskError, InputError, complaint
-from pareto_monoped.files import SQLITE, cure_of, is_failure
+from pareto_monoped.files import SQLITE, cure_of, is_failure, open_file
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
@@ -45,8 +45,7 @@ def read_toml(path: Path, *, what: str, error: type[InputError] = InputError) ->
     """
     source = f"{what} {str(path)!r}"
     try:
-        with path.open("rb") as stream:
-            # A device or a pipe may never end.
+        with open_file(path) as stream:
             content = stream.read(MAX_TOML_BYTES + 1)
     except FileNotFoundError:
         raise error(f"{source}: no such file; check the path") from None
@@ -100,7 +99,7 @@ def read_json(path: Path) -> Any:
         OSError: it cannot be read.
         ValueError: as by ``parsed_json``, or not UTF-8.
     """
-    with path.open("rb") as stream:
+    with open_file(path) as stream:
         return parsed_json(stream.read(MAX_JSON_CHARACTERS + 1).decode())
 
 

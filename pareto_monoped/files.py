@@ -3,6 +3,7 @@
 No output replaces a study, and none replaces a file of another kind unless ``force`` is set.
 """
 
+import ctypes
 import errno
 import os
 import secrets
@@ -10,6 +11,7 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import BinaryIO
 
 from pareto_monoped.errors import DiskError, OutputError
 
@@ -73,6 +75,26 @@ def temporary_beside(path: Path, temporary: Path | None = None) -> Iterator[Path
                 Path(f"{temporary}{end}").unlink(missing_ok=True)
 
 
+def rename_new(source: Path, target: Path) -> None:
+    """Rename a file in one step that replaces nothing; raise ``FileExistsError`` if there is a target.
+
+    Linux alone does so by renameat2 (its manual page, RENAME_NOREPLACE). Elsewhere a kill may leave both names.
+    """
+    with suppress(AttributeError):
+        names = os.fsencode(source.absolute()), os.fsencode(target.absolute())
+        if ctypes.CDLL(None, use_errno=True).renameat2(-1, names[0], -1, names[1], ctypes.c_uint(1)) == 0:
+            return
+    try:
+        os.link(source, target)
+        source.unlink()
+    except FileExistsError:
+        raise
+    except OSError:  # a file system without links
+        if target.exists():
+            raise FileExistsError(errno.EEXIST, "is there", str(target)) from None
+        source.replace(target)
+
+
 def refuse_database(path: Path) -> None:
     """Raise ``OutputError`` for a study, any other database, a file that belongs to one, or a device."""
     try:
@@ -95,11 +117,20 @@ def require_writable(path: Path) -> None:
         pass
 
 
+def open_file(path: Path) -> BinaryIO:
+    """Open a regular file for reading; raise ``OSError`` for a pipe, socket or device, which may never end."""
+    # Without O_NONBLOCK, which Windows lacks, opening a pipe waits until somebody writes to it.
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0)
+    stream = os.fdopen(os.open(path, flags), "rb")
+    if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
+        stream.close()
+        raise OSError(errno.EINVAL, "it is no regular file", str(path))
+    return stream
+
+
 def _beginning(path: Path) -> bytes:
     try:
-        if not path.is_file():  # reading a pipe would wait, or take what others should read
-            return b""
-        with path.open("rb") as stream:
+        with open_file(path) as stream:
             return stream.read(4096)
     except OSError:
         return b""

@@ -2,6 +2,7 @@ import errno
 import json
 import os
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -126,11 +127,18 @@ def test_what_is_no_file_is_one_line(path):
         read_toml(Path(path), what="motor file")
 
 
+@pytest.mark.parametrize("reader", [partial(read_toml, what="study file"), read_json])
+def test_a_pipe_is_refused_and_not_waited_for(tmp_path, reader):
+    os.mkfifo(tmp_path / "a.toml")
+    with pytest.raises((InputError, OSError), match="it is no regular file"):
+        reader(tmp_path / "a.toml")
+
+
 def test_a_failing_disk_is_not_the_files_fault(monkeypatch, tmp_path):
     def fails(*_, **__):
         raise OSError(errno.EIO, os.strerror(errno.EIO))
 
-    monkeypatch.setattr(Path, "open", fails)
+    monkeypatch.setattr(os, "open", fails)
     with pytest.raises(DiskError, match=r"Input/output error.*check the disk's health"):
         read_toml(tmp_path / "a.toml", what="motor file")
 
@@ -159,7 +167,8 @@ def test_what_is_no_json_is_a_value_error(text):
 def test_a_long_json_text_is_refused_before_it_is_parsed(monkeypatch, tmp_path):
     monkeypatch.setattr("pareto_monoped.config.MAX_JSON_CHARACTERS", 10)
     monkeypatch.setattr(json, "loads", lambda _: pytest.fail("parsed"))
-    for read in (lambda: parsed_json("[1, 2, 3, 4]"), lambda: read_json(Path("/dev/zero"))):
+    (tmp_path / "a.json").write_text("[1, 2, 3, 4]")
+    for read in (lambda: parsed_json("[1, 2, 3, 4]"), lambda: read_json(tmp_path / "a.json")):
         with pytest.raises(ValueError, match="must be 10 at most"):
             read()
 

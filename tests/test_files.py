@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from pareto_monoped.errors import OutputError
-from pareto_monoped.files import replacing, write_bytes, write_text
+from pareto_monoped.files import rename_new, replacing, write_bytes, write_text
 from tests.study.support import made_database
 
 
@@ -32,6 +32,20 @@ def test_bytes_and_ordinary_permissions(tmp_path):
 def test_suffix_is_kept_for_writers_that_look_at_it(tmp_path):
     with replacing(tmp_path / "part.stl") as temporary:
         assert temporary.suffix == ".stl"
+
+
+def test_a_rename_in_one_step_never_leaves_two_names_nor_replaces_anything(tmp_path, monkeypatch):
+    """A kill between a link and the removal of the old name had left a second name of a study."""
+    monkeypatch.delattr(os, "link")
+    source, target = tmp_path / "a", tmp_path / "b"
+    source.write_text("new")
+    rename_new(source, target)
+    assert (target.read_text(), list(tmp_path.iterdir())) == ("new", [target])
+    monkeypatch.undo()
+    source.write_text("newer")
+    with pytest.raises(FileExistsError):
+        rename_new(source, target)
+    assert (source.read_text(), target.read_text()) == ("newer", "new")
 
 
 def test_a_missing_folder_is_one_clear_line(tmp_path):

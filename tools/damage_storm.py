@@ -1,12 +1,11 @@
-"""Damage a finished study by flipped bits, bursts and truncations, and check that no damage to its data passes.
+"""Damage a finished study by flipped bits, bursts, truncations and wrong pages, and check that no damage passes.
 
     python tools/damage_storm.py --damages 1000 --seed 1
 
 The study is a real one, with audits and robustness. Each damage is made to a copy, which the commands then read:
 ``status``, ``front``, ``pick``, ``verify``, the readers of reports, exports and robustness, and ``resume``. Every
-command must either print what it prints of the undamaged study, or refuse in one line; only ``status``, which checks no
-hash so that it is fast, may print other numbers. ``verify`` must refuse whenever any row of any table is another one,
-or cannot be read. A resumed study must be equal to the undamaged one resumed.
+command must either print what it prints of the undamaged study, or refuse in one line. ``verify`` must refuse whenever
+any row of any table is another one, or cannot be read. A resumed study must be equal to the undamaged one resumed.
 Reading must leave the file as it is, and so must a resume that is refused. Each damage is tried in a process forked
 from here, so that a crash or a runaway allocation is seen too. Exits with 1 if anything was found.
 """
@@ -38,6 +37,7 @@ MOST_MB = 200.0
 """Memory that no damage may make a command take on top of what the undamaged study takes: our own choice, a tenth of
 what a small machine has."""
 _EVALUATIONS, _MORE = 60, 10
+_PAGE = 4096  #: Bytes of a page of SQLite, unless a database says otherwise (its file format, section 1.3.2).
 _STUDY = f"""
 name = "damaged"
 evaluations = {_EVALUATIONS}
@@ -61,6 +61,7 @@ class Whole:
     """The undamaged study, what is read from it, and how it goes on."""
 
     db: Path
+    earlier: bytes
     rows: dict[str, list[tuple[object, ...]]]
     said: dict[tuple[str, ...], str]
     data: StudyData
@@ -73,6 +74,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--damages", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--pages", action="store_true", help="only copies, exchanges and earlier states of pages")
     parser.add_argument("--keep", type=Path, help="folder for copies whose damage passed")
     arguments = parser.parse_args()
     generator, results, findings, most_mb = random.Random(arguments.seed), Counter[str](), [], 0.0
@@ -81,7 +83,7 @@ def main() -> int:
         whole = _whole(folder)
         content = whole.db.read_bytes()
         for number in range(arguments.damages):
-            what, damaged = _damage(content, generator)
+            what, damaged = _damage(content, whole.earlier, generator, pages=arguments.pages)
             copy = folder / "copy" / whole.db.name
             copy.parent.mkdir()
             copy.write_bytes(damaged)
@@ -112,6 +114,8 @@ def main() -> int:
 def _whole(folder: Path) -> Whole:
     (folder / "damaged.toml").write_text(_STUDY)
     study, db = load_study(folder / "damaged.toml"), folder / "damaged.db"
+    run(study, db, evaluations=_EVALUATIONS - 2 * _MORE, workers=1)
+    earlier = db.read_bytes()
     run(study, db, workers=1)
     _said(("robust", str(db), "--samples", "4", "--workers", "1"))
     later = folder / "later.db"
@@ -119,6 +123,7 @@ def _whole(folder: Path) -> Whole:
     resumed = _resumed(study, later)
     return Whole(
         db=db,
+        earlier=earlier,
         rows=_rows(db),
         said={words: _said(_filled(words, db))[1] for words in _READING},
         data=read_study(db),
@@ -132,9 +137,28 @@ def _resumed(study: Study, db: Path) -> StudyData:
     return read_study(db)
 
 
-def _damage(content: bytes, generator: random.Random) -> tuple[str, bytes]:
+def _wrong_pages(content: bytes, earlier: bytes, generator: random.Random) -> tuple[str, bytes]:
+    """A copy with one page over another, two exchanged, or one as it was earlier, and what was done to it."""
+    pages = [content[k : k + _PAGE] for k in range(0, len(content), _PAGE)]
+    before = [earlier[k : k + _PAGE] for k in range(0, len(earlier), _PAGE)]
+    one, other = generator.sample(range(len(pages)), 2)
+    kind = generator.choice(("copied over", "exchanged with", "left from earlier"))
+    if kind == "left from earlier":
+        one = generator.choice([k for k in range(min(len(before), len(pages))) if before[k] != pages[k]])
+        pages[one] = before[one]
+        return f"page {one} {kind}", b"".join(pages)
+    first, second = pages[one], pages[other]
+    pages[other] = first
+    if kind == "exchanged with":
+        pages[one] = second
+    return f"page {one} {kind} {other}", b"".join(pages)
+
+
+def _damage(content: bytes, earlier: bytes, generator: random.Random, *, pages: bool) -> tuple[str, bytes]:
     """A damaged copy, and what was done to it; one of five damages is to the first page, which describes all others."""
     bent, kind = bytearray(content), generator.random()
+    if pages or generator.random() < 0.2:
+        return _wrong_pages(content, earlier, generator)
     place = generator.randrange(4096 if generator.random() < 0.2 else len(content))
     if kind < 0.15:
         return f"cut off at byte {place}", content[:place]
@@ -181,7 +205,7 @@ def _findings(db: Path, whole: Whole) -> Iterator[str]:
     for words in _READING:
         code, said, errors = _said(_filled(words, db))
         refused[code != 0] += 1
-        equal = words[0] == "status" or said.replace(str(db), str(whole.db)) == whole.said[words]
+        equal = said.replace(str(db), str(whole.db)) == whole.said[words]
         found += _wrong(words[0], code, equal, errors)
         if words[0] == "verify" and code == 0 and not same:
             found.append("verify finds nothing, but rows are other ones")

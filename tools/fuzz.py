@@ -20,6 +20,7 @@ import resource
 import selectors
 import shutil
 import signal
+import socket
 import struct
 import subprocess
 import sys
@@ -271,6 +272,10 @@ def one(seed: int, number: int, source: Path, place: Path, given: argparse.Names
     for harm in call.harm:
         with contextlib.suppress(OSError):
             harm(place)
+    for name in ("pipe", "pipe.toml"):
+        os.mkfifo(place / name)
+    with contextlib.closing(socket.socket(socket.AF_UNIX)) as bound:
+        bound.bind(os.path.relpath(place / "socket.toml"))  # an absolute path may be too long for a socket
     if place.parent == disk:
         free = shutil.disk_usage(disk).free - int(str(call.options["tiny_disk"]))
         (disk / "filler").write_bytes(bytes(max(free, 0)))
@@ -282,7 +287,8 @@ def one(seed: int, number: int, source: Path, place: Path, given: argparse.Names
     wrong = list(findings(call, place, before, result))
     if wrong and given.keep:
         shutil.rmtree(given.keep / str(number), ignore_errors=True)
-        shutil.copytree(place, given.keep / str(number), symlinks=True)
+        special = shutil.ignore_patterns("pipe*", "socket.toml")
+        shutil.copytree(place, given.keep / str(number), symlinks=True, ignore=special)
     shutil.rmtree(place)
     (disk / "filler").unlink(missing_ok=True)
     return call, result, wrong

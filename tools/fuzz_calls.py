@@ -8,13 +8,14 @@ from pathlib import Path
 import click
 from fuzz_harm import EVIL, STUDIES, TEXTS, harm
 
-ODD_PATHS = (
+ODD_PATHS: tuple[str, ...] = (
     "", ".", "no.db", "no/such/file", "x" * 300, "/proc/self/environ", "/proc/x.db", "/dev/full", "loop", "folder",
+    "pipe", "pipe.toml", "socket.toml",
 )  # fmt: skip
 OUTPUTS: tuple[str, ...] = (
     "new.csv", "new.html", "new.xml", "new.svg", "new.db", "out", "notes.txt", "s.db", "s.db-lock", "study.toml",
 )  # fmt: skip
-OUTPUTS += ("", ".", "no/such/file.csv", "x" * 300, "/proc/x.csv", "/dev/full", "loop", "folder", f"{EVIL}.csv", "busy")
+OUTPUTS += ("", ".", "no/such/file.csv", "x" * 300, "/proc/x.csv", "/dev/full", "pipe", "folder", f"{EVIL}.csv", "busy")
 NUMBERS = (
     "0", "1", "7", "0.5", "-1", "1e400", "nan", "inf", "1_0", "9" * 400, "x", "", "0x10", "1,1", "1,nan", "1e-320",
 )  # fmt: skip
@@ -23,9 +24,10 @@ ASSIGNED = (
     "height_m=1e400",
 )  # fmt: skip
 NAMES = ("height_m,energy_j", "height_m,mass_kg", "energy_j", "a,b,c,d", "height_m,height_m", "", EVIL, "mean:height_m")
-MOTORS = ("VT8020", "vt8020", "U8", "m.toml", "no.toml", "VT", "", ".", "/dev/zero", EVIL, "x" * 300, "loop")
+MOTORS = ("VT8020", "vt8020", "U8", "m.toml", "no.toml", "VT", "", ".", "/dev/zero", EVIL, "x" * 300, "pipe.toml")
 CALIBRATIONS = (
     "reference", "paper", "ideal", "reference-1", "cal.toml", "no.toml", "", "../x", "/dev/zero", "loop.toml",
+    "pipe.toml", "socket.toml",
 )  # fmt: skip
 PROCESSES = ("1", "2", "0", "-1", "x", "1e400", "999")
 SCHEDULERS = ("tcp://127.0.0.1:1", "127.0.0.1", "tcp://", "http://x:1", "tcp://127.0.0.1:99999", "", "nonsense", EVIL)

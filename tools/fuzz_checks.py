@@ -29,6 +29,7 @@ _FAULTS = (
     "Warning:",
     "Segmentation",
     "Fatal Python",
+    "np.float64(",
 )
 _BESIDE = ("-wal", "-shm", "-journal", "-lock")
 

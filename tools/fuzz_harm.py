@@ -80,6 +80,7 @@ UNSEALED = (
     "DROP TABLE IF EXISTS monoped_seals",
     "DROP TABLE IF EXISTS monoped_front",
     "UPDATE monoped_meta SET value = '1' WHERE key = 'format'",
+    "UPDATE monoped_meta SET value = '{\"pareto-monoped\": \"0.2.0\"}' WHERE key = 'versions'",
 )
 VALUES: tuple[object, ...] = (
     None, "", "abc", EVIL, "\ud7ff" * 3, b"\xff\xfe", 0, -1, 2**62, -(2**63), 1e308, -1e308, float("inf"), 0.5, "[]",

@@ -172,7 +172,7 @@ class ActuatorMap:
         """
         index = int(self.interval_index([ratio])[0])
         if index < 0:
-            raise DesignError(f"gear ratio = {ratio!r}: {self.why_not(ratio)}; choose {self._existing()}")
+            raise DesignError(f"gear ratio = {float(ratio)!r}: {self.why_not(ratio)}; choose {self._existing()}")
         return self.entries[index]
 
     def lookup(self, ratio: float) -> Actuator:

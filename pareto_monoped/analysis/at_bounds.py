@@ -189,6 +189,7 @@ def front_alone(front: StudyFront) -> StudyData:
         history=pd.DataFrame(),
         audits=pd.DataFrame({"trial": [], "well_conditioned": []}),
         checkpoint=Checkpoint(generation=0, evaluations=0, state={}),
+        parts=front.parts,
         sealed=front.sealed,
     )
 

@@ -17,7 +17,7 @@ from pareto_monoped.storage.kept_front import STATES, KeptFront
 from pareto_monoped.storage.optuna_check import foreign_trials, optuna_findings
 from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.reader import StudyData, read_study
-from pareto_monoped.storage.seals import read_seals
+from pareto_monoped.storage.seals import read_seals, trials_of_hash
 
 HIGHEST_JUMP_M = 10.0
 """No robot here jumps higher: our own choice, several times the highest of the paper's designs and of any search."""
@@ -38,9 +38,6 @@ def implausible(data: StudyData) -> list[str]:
 
 def _trial_findings(data: StudyData) -> Iterator[str]:
     trials = data.trials
-    numbers = trials["trial"].to_numpy()
-    if (wrong := np.flatnonzero(numbers != np.arange(len(numbers)))).size:
-        yield f"trials are not numbered from 0 on: trial {numbers[wrong[0]]} stands in place {wrong[0]}"
     feasible = (trials["state"] == "feasible").to_numpy()
     yield from _first(trials, ~trials["state"].isin(STATES).to_numpy(), "has an unknown state")
     yield from _first(trials, np.diff(trials["generation"].to_numpy(), prepend=0) < 0, "has an impossible generation")
@@ -94,13 +91,23 @@ class Verification:
 
     trials: int  #: number of trials of the study
     sealed: bool  #: whether the study has a running hash
+    content_hash: str  #: see ``seals.content_hash``
     foreign: tuple[int, ...]  #: Optuna's numbers of trials that are not of this package
     simulated: int  #: how many trials jumped anew
     findings: tuple[str, ...]  #: what is wrong, one line each; none for a sound study
 
 
-def verify(db: StudyPlace, *, simulate: int = 0, workers: int = 1, executor: Executor | None = None) -> Verification:
+def verify(
+    db: StudyPlace,
+    *,
+    simulate: int = 0,
+    expect: str | None = None,
+    workers: int = 1,
+    executor: Executor | None = None,
+) -> Verification:
     """Check a study, and simulate some of its trials again, evenly spread; they must be equal to the last bit.
+
+    ``expect`` has the first digits of the content hash that the study must have.
 
     Raises:
         DatabaseError: it cannot be read at all, or its rows do not match their hash.
@@ -118,15 +125,29 @@ def verify(db: StudyPlace, *, simulate: int = 0, workers: int = 1, executor: Exe
             *_kept_front_findings(connection, data),
             *optuna_findings(connection, data, seals),
         ]
+    if expect is not None and not data.content_hash.startswith(expect):
+        findings.append(_of_another_hash(data, expect))
     numbers = np.unique(np.linspace(0, len(data.trials) - 1, min(simulate, len(data.trials))).astype(int))
     if len(numbers):
         findings += _jump_findings(data, numbers, workers, executor)
     return Verification(
         trials=len(data.trials),
         sealed=data.sealed,
+        content_hash=data.content_hash,
         foreign=foreign,
         simulated=len(numbers),
         findings=tuple(findings),
+    )
+
+
+def _of_another_hash(data: StudyData, expect: str) -> str:
+    """Return the finding; raise ``DatabaseError`` for a study that has only grown."""
+    finding = f"its content hash is {data.content_hash[: len(expect)]}, expected {expect}"
+    if (known := trials_of_hash(data.meta, data.parts, expect)) is None:
+        return f"{finding}: it was changed, an older copy has taken its place, or it is another study"
+    raise DatabaseError(
+        f"study database {str(data.db)!r}: {finding}, which its first {known} trials have; "
+        f"{len(data.trials) - known} came later, so give the hash that it has now, or a copy of then"
     )
 
 
@@ -156,7 +177,7 @@ def _jump_findings(
     for name in (*MEASURE_NAMES, *data.study.robust_names):
         again, stored = jumps.of(name), rows[name].to_numpy(dtype=np.float64)
         for k in np.flatnonzero(~((again == stored) | (np.isnan(again) & np.isnan(stored))))[:1]:
-            yield f"trial {numbers[k]} jumps otherwise: its {name} is {stored[k]!r}, simulated again {again[k]!r}"
+            yield f"trial {numbers[k]} jumps otherwise: its {name} is {float(stored[k])!r}, again {float(again[k])!r}"
     for k in np.flatnonzero(jumps.status != rows["status"].to_numpy(dtype=np.str_))[:1]:
         yield f"trial {numbers[k]} ends otherwise: {rows['status'].iloc[k]}, simulated again {jumps.status[k]}"
 

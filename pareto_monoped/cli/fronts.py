@@ -82,11 +82,12 @@ def front(
     if objectives is None and not include_all:
         kept = read_front(db)
         study, rows, used, sealed, chosen = kept.study, kept.rows, kept.used, kept.sealed, kept.study.objectives
+        content_hash = kept.content_hash
         if kept.foreign:
             note(foreign_note(kept.foreign))
     else:
         data = read_study(db)
-        study, used, sealed = data.study, in_use(data.trials), data.sealed
+        study, used, sealed, content_hash = data.study, in_use(data.trials), data.sealed, data.content_hash
         chosen = _objectives(objectives, data)
         rows = data.front(include_ill_conditioned=include_all, objectives=chosen)
         if chosen != study.objectives:
@@ -102,7 +103,8 @@ def front(
         write_text(csv_file, rows.to_csv(index=False, lineterminator="\n"), force=force)
         echo(f"wrote {csv_file} ({len(rows)} designs)", err=True)
     if as_json:
-        echo(json.dumps(rows.to_dict(orient="records"), indent=2))
+        anchored = rows.assign(study_content_hash=content_hash, study_sealed=sealed)
+        echo(json.dumps(anchored.to_dict(orient="records"), indent=2))
     elif csv_file is None:
         _print_table(rows, chosen)
         if most is None and len(rows) > _MANY:

@@ -66,6 +66,8 @@ def owned() -> Iterator[Callable[[int], NoReturn]]:
     # Handlers run in the reverse order in which they were registered: this one, the first, runs last.
     atexit.register(leave)
     try:
+        if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
         yield ended
     except KeyboardInterrupt:
         # A signal at the last moment, while the command's end is being told.

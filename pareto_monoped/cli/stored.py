@@ -1,6 +1,7 @@
 """Commands on a study database: ``verify``, ``repair``, ``dashboard``, ``report`` and ``trials``."""
 
 import errno
+import re
 import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,17 +19,38 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 
+class ContentHash(click.ParamType[str]):
+    """A content hash, or at least so many of its leading digits that no other study has them by chance."""
+
+    name = "hash"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """Return the digits in lower case."""
+        if not re.fullmatch("[0-9a-f]{16,64}", str(value).lower()):
+            self.fail(f"{value!r} is no content hash; give 16 to 64 hexadecimal digits, as 'status' prints them")
+        return str(value).lower()
+
+
 @click.command()
 @click.argument("db", type=options.DATABASE)
 @click.option(
     "--simulate", type=click.IntRange(min=0), default=0, metavar="N", help="Simulate N trials again and compare."
 )
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Number of threads.  [default: all cores]")
+@click.option("--expect", type=ContentHash(), metavar="HASH", help="Content hash that the study must have.")
 @options.where_options
-def verify(db: StudyPlace, simulate: int, workers: int | None, processes: int | None, scheduler: str | None) -> None:
+def verify(
+    db: StudyPlace,
+    simulate: int,
+    workers: int | None,
+    expect: str | None,
+    processes: int | None,
+    scheduler: str | None,
+) -> None:
     """Check that nothing in a study has been lost or changed.
 
-    Checks the running hash, the numbering, that values are finite and possible, and that Optuna's tables agree.
+    Checks the running hash, the numbering, that values are finite and possible, and that Optuna's tables agree. Only a
+    content hash noted elsewhere, from 'status' or a report, shows that it was not exchanged or edited on purpose.
     """
     from pareto_monoped.analysis.verify import require_sound
     from pareto_monoped.analysis.verify import verify as verify_study
@@ -40,7 +62,7 @@ def verify(db: StudyPlace, simulate: int, workers: int | None, processes: int | 
     if place != options.Where() and not simulate:
         raise click.UsageError("--processes and --scheduler go with --simulate only, which is what they do; drop them")
     with options.executor_at(place) as executor:
-        result = verify_study(db, simulate=simulate, workers=workers or cores(), executor=executor)
+        result = verify_study(db, simulate=simulate, expect=expect, workers=workers or cores(), executor=executor)
     for line in result.findings:
         echo(f"found: {line}", err=True)
     if result.foreign:
@@ -49,7 +71,7 @@ def verify(db: StudyPlace, simulate: int, workers: int | None, processes: int | 
         note(UNSEALED)
     require_sound(db, result)
     again = f", {result.simulated} jumped again as stored" if result.simulated else ""
-    echo(f"{db}: sound, {result.trials} trials{again}")
+    echo(f"{db}: sound, {result.trials} trials{again}\ncontent hash {result.content_hash}")
 
 
 @click.command()

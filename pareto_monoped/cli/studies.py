@@ -125,6 +125,7 @@ def status(db: StudyPlace, as_json: bool) -> None:
     """Show a study's progress, hypervolume, speed and settings."""
     from pareto_monoped.definition.study import NO_STRENGTH
     from pareto_monoped.storage.kept_front import foreign_note
+    from pareto_monoped.storage.seals import UNSEALED
     from pareto_monoped.storage.status import status as study_status
 
     facts = study_status(db)
@@ -150,10 +151,13 @@ def status(db: StudyPlace, as_json: bool) -> None:
         "hypervolume": f"{facts['hypervolume']:.4f} {facts['hypervolume_unit']} from ({_corner(facts)})",
         **_at_height(facts),
         "time": f"{facts['wall_time_s']:.1f} s" + (f", {rate:.0f} designs/s" if rate else ""),
-        "hash": facts["hash"][:16],
+        "settings hash": facts["hash"][:16],
+        "content hash": facts["content_hash"][:32],
     }
     for label, value in lines.items():
         echo(f"{label:<22} {value}")
+    if not facts["sealed"]:
+        note(UNSEALED)
 
 
 def _state(facts: dict[str, Any]) -> str:

@@ -38,7 +38,7 @@ class DaskWorkers(Staff):
         require_extra("cluster", self.label)
         _refuse_no_address(address)
         # What goes wrong is said in our own words, once. Dask sets levels of its own when it is imported, as it now is.
-        for name in ("distributed", "distributed.client"):
+        for name in ("distributed", "distributed.client", "tornado.application", "asyncio"):
             logging.getLogger(name).setLevel(logging.CRITICAL)
         self._client = self._first_connection()
         self._members: dict[str, Member] = {}

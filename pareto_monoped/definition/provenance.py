@@ -12,7 +12,7 @@ from pareto_monoped.definition.algorithms import EvolutionSettings, OptunaSettin
 from pareto_monoped.definition.study import Study
 from pareto_monoped.definition.variables import MOTOR_KEYS
 
-_NOT_RESULTS = ("audit", "description", "evaluations", "stop")
+NOT_RESULTS = ("audit", "description", "evaluations", "stop")
 """Keys of a study that decide when it ends or what follows, but not which trials it has."""
 
 
@@ -36,7 +36,7 @@ def environment() -> dict[str, str]:
 
 def decisive(study: Study, contents: Mapping[str, Any], package_versions: Mapping[str, str]) -> dict[str, Any]:
     """Return all that changes results, as JSON values; ``contents`` are those of ``motor`` and ``calibration``."""
-    settings = {key: value for key, value in study.as_dict().items() if key not in _NOT_RESULTS}
+    settings = {key: value for key, value in study.as_dict().items() if key not in NOT_RESULTS}
     # Not the names of motor and calibration decide, but their contents, which stand beside the settings.
     settings = {key: value for key, value in settings.items() if key not in (*MOTOR_KEYS, "calibration")}
     if (sampling := settings.pop("uncertainty", None)) and study.robust_names:

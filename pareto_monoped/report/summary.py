@@ -129,6 +129,8 @@ def provenance(data: StudyData) -> list[list[str]]:
         ("motor", study.motor_text),
         ("calibration", meta.calibration),
         ("settings hash (SHA-256)", meta.hash),
+        ("content hash (SHA-256)", data.content_hash),
+        ("running hash", "intact" if data.sealed else "none"),
         *((f"version of {name}", version) for name, version in meta.versions.items()),
         *((name, value) for name, value in meta.environment.items()),
         *((key, value) for key, value in _flat(study.as_dict()) if key not in _ABOVE),

@@ -4,12 +4,14 @@ A database may come from a stranger. It is read with plain SELECTs on known tabl
 JSON.
 """
 
+import re
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import AbstractContextManager, closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pareto_monoped.config import parsed_json
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.storage.address import Server
 from pareto_monoped.storage.connection import Connection
@@ -20,10 +22,11 @@ if TYPE_CHECKING:
 BY_NAME = "(--db, in Python db=...)"
 """How a database is named, on the command line and in Python."""
 FORMAT = 2
-"""Version of our tables. Readers refuse later versions. Format 1, up to version 0.2.0, had neither running hash nor
-kept front; a study gets both when it goes on."""
+"""Version of our tables. Readers refuse later versions. Format 1, up to version 0.2.0, has neither running hash nor
+kept front."""
 TABLES = ("monoped_meta", "monoped_checkpoint", "monoped_history", "monoped_trials", "monoped_audits")
 _SINCE_2 = ("monoped_seals", "monoped_front")
+_FIRST_OF_2 = (0, 3)  #: first version of the package whose studies have format 2
 _OPTUNA_TABLES = ("studies", "trials", "trial_params", "trial_values")
 
 
@@ -149,4 +152,18 @@ def check(connection: Connection, place: Path | Server) -> int:
         raise DatabaseError(
             f"study database {str(place)!r}: is damaged (it lacks the table {lost[0]!r}); restore a copy"
         )
+    if int(version) == 1 and (found := _of_later(connection, tables)):
+        raise DatabaseError(
+            f"study database {str(place)!r}: is damaged (it has {found}, but no running hash); restore a copy"
+        )
     return int(version)
+
+
+def _of_later(connection: Connection, tables: Collection[str]) -> str:
+    """Return what a study of format 1 has that only later ones have, so that its running hash was taken off; or ""."""
+    if left := [name for name in _SINCE_2 if name in tables]:
+        return f"the table {left[0]!r}"
+    row = connection.execute("SELECT value FROM monoped_meta WHERE key = 'versions'").fetchone()
+    version = str(parsed_json(row[0])["pareto-monoped"]) if row else "no version"
+    earlier = re.match(r"(\d+)\.(\d+)(?:\D|$)", version)
+    return "" if earlier and tuple(map(int, earlier.groups())) < _FIRST_OF_2 else f"version {version}"

@@ -9,13 +9,13 @@ import os
 import sqlite3
 import time
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, ExitStack, closing, contextmanager
+from contextlib import AbstractContextManager, ExitStack, closing, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pareto_monoped.config import MAX_JSON_CHARACTERS
 from pareto_monoped.errors import DatabaseError, DiskError
-from pareto_monoped.files import SQLITE, temporary_beside
+from pareto_monoped.files import SQLITE, rename_new, temporary_beside
 from pareto_monoped.storage.base import Storage, error_behind
 from pareto_monoped.storage.columns import listed
 from pareto_monoped.storage.connection import Connection
@@ -35,11 +35,10 @@ _ANEW = "restore a copy, or move it away and run the study again"
 _LOCKED = (DatabaseError, "is locked by another program; close it and try again")
 _DAMAGED = (DatabaseError, "is damaged ({}); " + _ANEW)
 _CODES: dict[int, tuple[type[DatabaseError | DiskError], str]] = {
-    sqlite3.SQLITE_FULL: (DiskError, "the disk is full; make room and resume, all acknowledged trials are safe"),
+    sqlite3.SQLITE_FULL: (DiskError, "the disk is full; make room and {then}"),
     sqlite3.SQLITE_IOERR: (
         DiskError,
-        "cannot be written or read ({}); check the disk's free space and health and resume, "
-        "all acknowledged trials are safe",
+        "cannot be written or read ({}); check the disk's free space and health and {then}",
     ),
     sqlite3.SQLITE_NOMEM: (DiskError, "cannot be used ({}); " + _ANEW),
     sqlite3.SQLITE_TOOBIG: (
@@ -56,7 +55,7 @@ _CODES: dict[int, tuple[type[DatabaseError | DiskError], str]] = {
         "cannot be opened; check that the folder exists and may be written to",
     ),
 }
-"""What SQLite's errors mean to the user; ``{}`` is SQLite's own text."""
+"""What SQLite's errors mean to the user; ``{}`` is SQLite's own text, ``{then}`` what to do afterwards."""
 
 
 class FileConnection(sqlite3.Connection, Connection):
@@ -95,8 +94,8 @@ class FileConnection(sqlite3.Connection, Connection):
                     yield f"SQLite: {line}"
 
     def examine(self) -> None:
-        """Raise an error of SQLite if pages are damaged."""
-        if self.execute("PRAGMA quick_check(1)").fetchone()[0] != "ok":
+        """Raise an error of SQLite if pages are damaged, those of indexes included, which readers do not use."""
+        if self.execute("PRAGMA integrity_check(1)").fetchone()[0] != "ok":
             raise sqlite3.DatabaseError("its pages contradict each other")
 
     def settle(self) -> None:
@@ -169,22 +168,15 @@ class FileStorage(Storage):
         Path(f"{new}-journal").unlink(missing_ok=True)
         with temporary_beside(self.place, new) as draft:
             draft.unlink()
-            with self.translated():
+            with self._translated("run the study again"):
                 yield FileStorage(draft)
                 self._settle(draft)
 
     def _settle(self, draft: Path) -> None:
         """Put the draft in its place, or fill the vacant file there; the draft may be left over."""
-        try:
-            # Unlike a rename, a link does not replace what a reader may have made a moment ago.
-            os.link(draft, self.place)
+        with suppress(FileExistsError):  # a reader may have made one a moment ago
+            rename_new(draft, self.place)
             return
-        except FileExistsError:
-            pass
-        except OSError:  # a file system without links
-            if not self.place.exists():
-                draft.replace(self.place)
-                return
         if not self.is_vacant():
             raise sqlite3.DatabaseError("another program has filled it meanwhile")
         _fill(draft, self.place)
@@ -244,9 +236,13 @@ class FileStorage(Storage):
         """Return the process id of the run that holds the study, or None."""
         return holder(self.place)
 
-    @contextmanager
-    def translated(self) -> Iterator[None]:
+    def translated(self) -> AbstractContextManager[None]:
         """Turn exceptions of SQLite, of SQLAlchemy and of the system into one clear error of ours."""
+        return self._translated("resume, all acknowledged trials are safe")
+
+    @contextmanager
+    def _translated(self, then: str) -> Iterator[None]:
+        """Say what to do ``then``, once the disk has room or works again."""
         try:
             yield
         except OSError as error:
@@ -255,7 +251,7 @@ class FileStorage(Storage):
             found = error if isinstance(error, sqlite3.Error) else error_behind(error)
             if found is None:
                 raise
-            raise _clear(self.place, found) from error
+            raise _clear(self.place, found, then) from error
 
     def is_at_rest(self) -> bool:
         """Return whether the study is a single file; a kill at the very end leaves a log beside it."""
@@ -344,10 +340,10 @@ def _fill(draft: Path, path: Path) -> None:
         source.backup(target, progress=wait, sleep=0.02)
 
 
-def _clear(path: Path, error: BaseException) -> DatabaseError | DiskError:
+def _clear(path: Path, error: BaseException, then: str) -> DatabaseError | DiskError:
     """Return the error of ours for one of SQLite."""
     extended = getattr(error, "sqlite_errorcode", 0)
     kind, words = _CODES.get(extended & 0xFF, (DatabaseError, "cannot be used ({}); " + _ANEW))
     if extended == sqlite3.SQLITE_READONLY_ROLLBACK:
         words = "is being changed by another process; try again"
-    return kind(f"study database {str(path)!r}: {' '.join(words.format(error).split())}")
+    return kind(f"study database {str(path)!r}: {' '.join(words.format(error, then=then).split())}")

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,9 @@ from pareto_monoped.pareto.front import GrowingFront
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.storage.columns import listed
 from pareto_monoped.storage.connection import Connection
+from pareto_monoped.storage.meta import StudyMeta, meta_of_rows
 from pareto_monoped.storage.place import StudyPlace, storage_of
+from pareto_monoped.storage.seals import ROWS, Seals, damaged, seals_of_trials
 
 FRONT = """
 CREATE TABLE monoped_front (
@@ -126,6 +129,34 @@ def rows_of(connection: Connection, names: Sequence[str], trials: Sequence[int])
             f"SELECT {listed(names)} FROM monoped_trials WHERE trial IN ({numbers}) ORDER BY trial"
         ).fetchall()
     return rows
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CheckedFront:
+    """The stored rows behind the front of a study, checked against its running hash."""
+
+    seals: Seals
+    meta: StudyMeta
+    columns: list[str]  #: names of the columns of a trial
+    #: the trials on the kept front and all that came after it, ascending: one that is bent may hide that it is on it
+    trials: list[tuple[Any, ...]]
+
+
+def checked_front(connection: Connection, db: StudyPlace) -> CheckedFront:
+    """Read what is behind the front of a study that has a running hash; raise ``DatabaseError`` if it is damaged."""
+    seals = seals_of_trials(connection, db)
+    rows = {table: connection.execute(ROWS[table]).fetchall() for table in ("meta", "front")}
+    if findings := [line for table in rows for line in seals.row_findings(table, rows[table])]:
+        raise damaged(db, findings)
+    columns = connection.columns("monoped_trials")
+    numbers, counts, _ = kept_row(connection)
+    read = [*numbers, *range(sum(counts.values()), seals.trials)]
+    trials = rows_of(connection, columns, read)
+    if len(trials) < len(read):
+        raise damaged(db, ["trials of its kept front are missing"])
+    if trials and (findings := seals.trial_findings(dict(zip(columns, zip(*trials, strict=True), strict=True)), read)):
+        raise damaged(db, findings)
+    return CheckedFront(seals=seals, meta=meta_of_rows(rows["meta"], db), columns=columns, trials=trials)
 
 
 def front_trials(db: StudyPlace) -> dict[int, str]:

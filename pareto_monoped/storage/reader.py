@@ -4,7 +4,7 @@ Stored rows become a data frame with every column there is, the names of the mot
 from those that databases of earlier versions have.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
@@ -25,7 +25,16 @@ from pareto_monoped.storage.base import undamaged
 from pareto_monoped.storage.columns import COLUMNS, LATER, REQUIRED
 from pareto_monoped.storage.meta import StudyMeta, meta_of_rows, motor_keys
 from pareto_monoped.storage.place import StudyPlace, storage_of
-from pareto_monoped.storage.seals import ROWS, Seals, damaged, has_seals, read_seals
+from pareto_monoped.storage.seals import (
+    ROWS,
+    Parts,
+    content_hash,
+    damaged,
+    has_seals,
+    numbering_findings,
+    read_seals,
+    trial_digests,
+)
 
 if TYPE_CHECKING:
     from pareto_monoped.actuator.motor import Motor
@@ -148,6 +157,7 @@ class StudyData:
     history: pd.DataFrame
     audits: pd.DataFrame  #: one row per audited trial: trial, well_conditioned, the measures of the audit, reason
     checkpoint: Checkpoint  #: for resuming
+    parts: Parts  #: digests of its trials
     sealed: bool = True  #: whether it has a running hash, against which everything above was checked
     links: int = 0  #: length of its running hash
 
@@ -227,6 +237,11 @@ class StudyData:
             return plain_coordinates(self.study)
         return searched_coordinates(self.study, self.kits)
 
+    @cached_property
+    def content_hash(self) -> str:
+        """SHA-256 of what decides its trials and of all trials, see ``seals.content_hash``."""
+        return content_hash(self.meta, self.parts)
+
     @property
     def _source(self) -> str:
         return f"study database {str(self.db)!r}"
@@ -274,7 +289,8 @@ def read_study(db: StudyPlace) -> StudyData:
             tables = [table for table in ROWS if sealed or table != "front"]
             rows = {table: connection.execute(ROWS[table]).fetchall() for table in tables}
             cursor = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
-            trials = trial_frame(connection.columns("monoped_trials"), cursor, db)
+            columns = connection.columns("monoped_trials")
+            trials = trial_frame(columns, cursor, db)
             seals = read_seals(connection, db) if sealed else None
         meta = meta_of_rows(rows["meta"], db)
         study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
@@ -288,8 +304,14 @@ def read_study(db: StudyPlace) -> StudyData:
         if not np.isfinite(history.to_numpy(dtype=np.float64)).all():
             raise ValueError("a hypervolume or time of its history is not finite")
         named = with_agility(with_motors(trials, study, meta, db))
-        if seals is not None and (findings := _seal_findings(seals, trials, rows)):
+        values = {name: trials[name].to_numpy() for name in trials}
+        findings = numbering_findings(values["trial"], 0 if seals is None else seals.trials)
+        if seals is not None:
+            findings += seals.trial_findings(values, values["trial"])
+            findings += [line for table in rows for line in seals.row_findings(table, rows[table])]
+        if findings:
             raise damaged(db, findings)
+        parts: Parts = [(0, tuple(columns), "".join(trial_digests(columns, values)))] if seals is None else seals.parts
         return StudyData(
             db=db,
             study=study,
@@ -298,15 +320,7 @@ def read_study(db: StudyPlace) -> StudyData:
             history=history,
             audits=pd.DataFrame(audits) if audits else pd.DataFrame({"trial": [], "well_conditioned": []}),
             checkpoint=checkpoint,
+            parts=parts,
             sealed=sealed,
             links=0 if seals is None else seals.links,
         )
-
-
-def _seal_findings(seals: Seals, trials: pd.DataFrame, rows: Mapping[str, Sequence[Sequence[Any]]]) -> list[str]:
-    """Return what does not match the running hash of a whole study; ``rows`` as by ``seals.ROWS``."""
-    numbers = trials["trial"].to_numpy()
-    findings = seals.trial_findings({name: trials[name].to_numpy() for name in trials}, numbers)
-    if len(numbers) < seals.trials:
-        findings.append(f"{seals.trials - len(numbers)} trials are missing")
-    return findings + [line for table in rows for line in seals.row_findings(table, rows[table])]

@@ -4,22 +4,26 @@ A row's digest is the first 16 hexadecimal digits of SHA-256 over its values, en
 1.8e19). A link of the chain holds the digests of one transaction and SHA-256 over them and the previous link's hash. So
 a few rows can be checked without reading the others: first the links, then the rows against the digests in them.
 
-The hash finds damage and careless edits. It is no signature: who edits a study on purpose can compute it anew.
+The hash finds damage and careless edits. It is no signature: who edits a study on purpose can compute it anew. Such
+edits, and an older copy in a study's place, change the content hash, which somebody can have noted elsewhere.
 """
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping, Sequence
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from pareto_monoped.config import parsed_json
+from pareto_monoped.definition.provenance import NOT_RESULTS, digest
 from pareto_monoped.design import DEFAULTS
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.storage.columns import COLUMNS
 from pareto_monoped.storage.connection import Connection
+from pareto_monoped.storage.meta import StudyMeta
 from pareto_monoped.storage.place import StudyPlace
 
 SEALS = """
@@ -50,8 +54,10 @@ BY_OPTUNA = ""
 OPTUNA_STUDY = "optuna_study"
 """What is sealed of Optuna's tables on the study itself when it is created, see ``optuna_tables.study_digests``."""
 
-UNSEALED = "the study has no running hash, so damage to numbers may go unnoticed; it gets one when it goes on"
-"""What is said of a study of version 0.2.0 or earlier."""
+UNSEALED = (
+    "the study has no running hash, so damage to numbers may go unnoticed; studies of version 0.3.0 and later have one"
+)
+"""Note on a study of version 0.2.0 or earlier."""
 
 _DIGITS = 16
 _BLOCK = 20_000
@@ -120,14 +126,17 @@ class Sealer:
         self.links = link + 1
 
 
+Parts = Sequence[tuple[int, tuple[str, ...], str]]
+"""Number of the first trial, columns and digests of trials that follow one another."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Seals:
     """The digests of all rows of a study."""
 
     db: StudyPlace  #: the study's database
     links: int  #: number of links in the chain
-    #: number of the first trial, columns and digests of the trials of each link that has trials
-    parts: tuple[tuple[int, tuple[str, ...], str], ...]
+    parts: Parts  #: of all trials
     #: the latest digests of the rows of all other tables
     written: dict[str, dict[str, str]] = field(default_factory=dict)
 
@@ -160,8 +169,8 @@ class Seals:
                 findings += [f"trial {number} does not match its hash" for number in sorted(wrong)]
         return findings + [f"trial {number} has no hash" for number in places[~known]]
 
-    def row_findings(self, table: str, rows: Iterable[Sequence[Any]]) -> list[str]:
-        """Return what does not match among all rows of a table of ``ROWS``, as they are read there."""
+    def row_findings(self, table: str, rows: Iterable[Sequence[Any]], *, whole: bool = True) -> list[str]:
+        """Return what does not match among rows of a table of ``ROWS``, or among all of them if it is ``whole``."""
         sealed = self.written.get(table, {})
         found = row_digests(rows)
         findings = [
@@ -169,7 +178,7 @@ class Seals:
             for key, digest in found.items()
             if sealed.get(key) != digest
         ]
-        return findings + [f"row {key} of its {table} is missing" for key in sealed if key not in found]
+        return findings + [f"row {key} of its {table} is missing" for key in sealed if whole and key not in found]
 
 
 def _not_default(values: Mapping[str, Any], names: Iterable[str], count: int) -> Any:
@@ -185,7 +194,7 @@ def _not_default(values: Mapping[str, Any], names: Iterable[str], count: int) ->
 
 
 def has_seals(connection: Connection) -> bool:
-    """Return whether a study has a running hash; studies of versions up to 0.2.0 have none until they go on."""
+    """Return whether a study has a running hash, as all have but those of versions up to 0.2.0."""
     row = connection.execute("SELECT value FROM monoped_meta WHERE key = 'format'").fetchone()
     return row is not None and row[0] != "1"
 
@@ -215,6 +224,56 @@ def read_seals(connection: Connection, db: StudyPlace) -> Seals:
         raise damaged(db, ["its running hash is empty"])
     joined = tuple((first, names, "".join(digests)) for first, names, digests in parts)
     return Seals(db=db, links=links, parts=joined, written=written)
+
+
+def numbering_findings(numbers: Any, count: int) -> list[str]:
+    """Return what is wrong with the numbers of all ``count`` trials in stored order, which are 0, 1, 2 and so on."""
+    wrong = np.flatnonzero(numbers != np.arange(len(numbers)))[:1]
+    findings = [f"trial {numbers[place]} stands in place {place}, where trial {place} must be" for place in wrong]
+    return findings or [f"{count - len(numbers)} trials are missing"] * (len(numbers) < count)
+
+
+def seals_of_trials(connection: Connection, db: StudyPlace) -> Seals:
+    """Read the chain, and raise ``DatabaseError`` unless exactly the trials that it has are stored, each once."""
+    seals = read_seals(connection, db)
+    numbers = np.fromiter(
+        (row[0] for row in connection.execute("SELECT trial FROM monoped_trials ORDER BY trial")), int
+    )
+    if findings := numbering_findings(numbers, seals.trials):
+        raise damaged(db, findings)
+    return seals
+
+
+def content_hash(meta: StudyMeta, parts: Parts) -> str:
+    """Return the SHA-256 of what decides a study's trials and of the digests of all trials in order.
+
+    It is the same in a file and on a server, with any number of workers and after any interruption: it depends neither
+    on how trials were grouped into transactions nor on what was computed from them.
+    """
+    *_, found = _growing(meta, parts, sys.maxsize)
+    return found
+
+
+def trials_of_hash(meta: StudyMeta, parts: Parts, expected: str) -> int | None:
+    """Return how many of the first trials have a content hash that begins so, or None if no number of them has."""
+    hashes = enumerate(_growing(meta, parts, _DIGITS))
+    return next((count for count, found in hashes if found.startswith(expected)), None)
+
+
+def _growing(meta: StudyMeta, parts: Parts, digits: int) -> Iterator[str]:
+    """Yield the content hash without trials, and after so many more ``digits`` of its digests."""
+    study = {key: value for key, value in meta.study.items() if key not in NOT_RESULTS}
+    decisive = digest({"study": study, "contents": meta.contents, "versions": meta.versions})
+    found = hashlib.sha256(decisive.encode())
+    before: tuple[str, ...] = ()
+    yield found.hexdigest()
+    for _, names, digests in parts:
+        if names != before:
+            found.update(json.dumps(names).encode())
+            before = names
+        for place in range(0, len(digests), digits):
+            found.update(digests[place : place + digits].encode())
+            yield found.hexdigest()
 
 
 _SHOWN = 3

@@ -1,6 +1,7 @@
-"""What a study says of itself without its trials being read: progress, settings, counts, front and hypervolume."""
+"""Progress, settings, counts, front and hypervolume of a study, read without its other trials, and checked."""
 
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -8,14 +9,13 @@ from numpy.typing import NDArray
 
 from pareto_monoped.definition.study import Study, study_from_dict
 from pareto_monoped.design import HEADLINE_HEIGHT_M
-from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import best_at_height
 from pareto_monoped.pareto.objectives import hypervolume
-from pareto_monoped.storage.connection import Connection
-from pareto_monoped.storage.kept_front import STATES, KeptFront, foreign_count, rows_of
-from pareto_monoped.storage.meta import StudyMeta, meta_of_rows
+from pareto_monoped.storage.base import undamaged
+from pareto_monoped.storage.kept_front import STATES, KeptFront, checked_front, foreign_count
+from pareto_monoped.storage.meta import StudyMeta
 from pareto_monoped.storage.place import StudyPlace, storage_of
-from pareto_monoped.storage.seals import has_seals
+from pareto_monoped.storage.seals import ROWS, content_hash, damaged, has_seals
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,57 +32,68 @@ class Summary:
     heights_m: NDArray[np.float64]  #: heights of the designs on the front, shape (n,)
     energies_j: NDArray[np.float64]  #: energies of the designs on the front, shape (n,)
     foreign: int  #: how many of Optuna's trials are not of this package
+    content_hash: str  #: see ``seals.content_hash``
     sealed: bool  #: whether the study has a running hash
 
 
 def read_summary(db: StudyPlace) -> Summary:
-    """Read the summary of a study, from its kept front if it has one; the checkpoint is never read."""
-    with storage_of(db).reading() as connection:
-        sealed = has_seals(connection)
-        meta = meta_of_rows(connection.execute("SELECT key, value FROM monoped_meta").fetchall(), db)
-        study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
-        try:
-            counts, trials = _kept(connection, study) if sealed else _computed(connection, db)
-            names = [*study.objectives.names, "height_m", "energy_j"]
-            rows = rows_of(connection, names, trials)
-            if len(rows) != len(trials):
-                raise ValueError("trials of its kept front are missing")
-            values = np.array(rows, dtype=np.float64).reshape(-1, len(names))
-            values = values[np.argsort(values[:, 0], kind="stable")]
-            last = connection.execute("SELECT seconds FROM monoped_history ORDER BY generation DESC LIMIT 1").fetchone()
-            bad = connection.execute("SELECT count(*) FROM monoped_audits WHERE well_conditioned = 0").fetchone()
-            seconds = float(last[0]) if last else 0.0
-            foreign = foreign_count(connection)
-        except (TypeError, ValueError, RecursionError) as error:
-            raise DatabaseError(f"study database {str(db)!r}: is damaged ({error}); restore a copy") from None
-    return Summary(
-        study=study,
-        meta=meta,
-        counts=counts,
-        seconds=seconds,
-        ill_conditioned=int(bad[0]),
-        front=values[:, :-2],
-        heights_m=values[:, -2],
-        energies_j=values[:, -1],
-        foreign=foreign,
-        sealed=sealed,
-    )
+    """Read the summary of a study, from its kept front if it has one; what it says is checked against the running hash.
+
+    Raises:
+        DatabaseError: missing, not a study, damaged, or of a newer version.
+    """
+    with undamaged(db), storage_of(db).reading() as connection:
+        if not has_seals(connection):
+            return _computed(db, foreign_count(connection))
+        checked = checked_front(connection, db)
+        last = connection.execute(f"{ROWS['history']} DESC LIMIT 1").fetchall()
+        audits = connection.execute(ROWS["audits"]).fetchall()
+        findings = checked.seals.row_findings("history", last, whole=False)
+        if findings := [*findings, *checked.seals.row_findings("audits", audits)]:
+            raise damaged(db, findings)
+        study = study_from_dict(checked.meta.study, source=f"study database {str(db)!r}")
+        kept = KeptFront(study.objectives)
+        kept.load(connection)
+        values = itemgetter(*map(checked.columns.index, ("trial", *study.objectives.names, "height_m", "energy_j")))
+        numbers = set(kept.numbers)
+        rows = np.array([row for row in map(values, checked.trials) if row[0] in numbers], dtype=np.float64)
+        return _summary(
+            rows.reshape(-1, len(study.objectives.names) + 3)[:, 1:],
+            study=study,
+            meta=checked.meta,
+            counts=kept.counts,
+            seconds=float(last[0][3]) if last else 0.0,
+            ill_conditioned=sum(1 for row in audits if not row[1]),
+            foreign=foreign_count(connection),
+            content_hash=content_hash(checked.meta, checked.seals.parts),
+            sealed=True,
+        )
 
 
-def _kept(connection: Connection, study: Study) -> tuple[dict[str, int], list[int]]:
-    front = KeptFront(study.objectives)
-    front.load(connection)
-    return front.counts, front.numbers
+def _summary(values: NDArray[np.float64], **known: Any) -> Summary:
+    """Return a summary; ``values`` has the objectives, height and energy of each design on the front."""
+    values = values[np.argsort(values[:, 0], kind="stable")]
+    return Summary(front=values[:, :-2], heights_m=values[:, -2], energies_j=values[:, -1], **known)
 
 
-def _computed(connection: Connection, db: StudyPlace) -> tuple[dict[str, int], list[int]]:
-    """Compute counts and front of a study of format 1, which keeps no front."""
+def _computed(db: StudyPlace, foreign: int) -> Summary:
+    """Compute the summary of a study of format 1, which keeps no front."""
     from pareto_monoped.storage.reader import read_study
 
-    counts = dict.fromkeys(STATES, 0)
-    for state, count in connection.execute("SELECT state, count(*) FROM monoped_trials GROUP BY state"):
-        counts[state] = count
-    return counts, sorted(read_study(db).front()["trial"].tolist())
+    data = read_study(db)
+    states = data.trials["state"].tolist()
+    names = [*data.study.objectives.names, "height_m", "energy_j"]
+    return _summary(
+        data.front().sort_values("trial")[names].to_numpy(dtype=np.float64),
+        study=data.study,
+        meta=data.meta,
+        counts={state: states.count(state) for state in STATES},
+        seconds=data.wall_time_s,
+        ill_conditioned=len(data.ill_conditioned),
+        foreign=foreign,
+        content_hash=data.content_hash,
+        sealed=False,
+    )
 
 
 def status(db: StudyPlace) -> dict[str, Any]:
@@ -118,6 +129,8 @@ def status(db: StudyPlace) -> dict[str, Any]:
         "least_energy_at_0_8_m_j": float(high.min()) if len(high) else None,
         "best_at_0_8_m": None if best is None else {best.measure.name: best.value},
         "hash": data.meta.hash,
+        "content_hash": data.content_hash,
+        "sealed": data.sealed,
         "versions": data.meta.versions,
         "created": data.meta.created,
         "strength": data.study.strength,

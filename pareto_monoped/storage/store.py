@@ -87,7 +87,11 @@ class Store:
 
     def _open(self, coordinates: Coordinates, known_schemas: Sequence[str]) -> None:
         connection = self._connection
-        version = check(connection, self.path)
+        if check(connection, self.path) < FORMAT:
+            raise DatabaseError(
+                f"study database {str(self.path)!r}: is of version 0.2.0 or earlier, which is only read; run the study "
+                "anew in another database"
+            )
         connection.examine()
         rows = connection.execute("SELECT study_id FROM studies").fetchall()
         if len(rows) != 1:
@@ -99,8 +103,6 @@ class Store:
         self._direct = revision is not None and revision[0] in known_schemas
         self._add_later_columns()
         self._sealer, self._front = Sealer(connection), KeptFront(self._objectives)
-        if version < FORMAT:
-            self._adopt()
         self._front.load(connection)
         connection.settle()
 
@@ -112,28 +114,6 @@ class Store:
             with self._connection.transaction():
                 for column in missing:
                     self._connection.define(f"ALTER TABLE monoped_trials ADD COLUMN {column.name} {column.sql}")
-
-    def _adopt(self) -> None:
-        """Give a study of format 1 what it lacks: running hash and kept front, over all that it holds now."""
-        execute = self._connection.execute
-        with self._connection.transaction():
-            self._connection.define(SEALS + FRONT)
-            self._connection.replace("monoped_meta", [("format", strict_json(FORMAT))])
-            names = self._connection.columns("monoped_trials")
-            rows = execute("SELECT * FROM monoped_trials ORDER BY trial").fetchall()
-            trials: dict[str, Any] = dict(zip(names, zip(*rows, strict=True), strict=True)) if rows else {}
-            if rows:
-                if trials["trial"] != tuple(range(len(rows))):
-                    raise DatabaseError(
-                        f"study database {str(self.path)!r}: is damaged (its trials are not numbered from 0 to "
-                        f"{len(rows) - 1}); restore a copy"
-                    )
-                self._front.add(trials)
-            self._front.leave_out(self._connection, self._ill_conditioned())
-            self._front.store(self._connection)
-            written = {table: row_digests(execute(sql)) for table, sql in ROWS.items()}
-            written[OPTUNA_STUDY] = study_digests(self._connection)
-            self._sealer.add(written, 0, names if rows else (), trials)
 
     def _ill_conditioned(self) -> set[int]:
         rows = self._connection.execute("SELECT trial FROM monoped_audits WHERE well_conditioned = 0")

@@ -12,7 +12,7 @@ from pareto_monoped.storage.file import FileConnection
 from pareto_monoped.storage.optuna_tables import stored_digest, trial_ids
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
-from tests.study.support import UNSEALED, change
+from tests.study.support import UNSEALED, change, reseal
 
 STUDY = study_from_dict(
     {"name": "v", "evaluations": 60, "audit": False, "algorithm": {"name": "nsga2", "population": 20}}, source="test"
@@ -107,7 +107,6 @@ FEASIBLE = "(SELECT min(trial) FROM monoped_trials WHERE state = 'feasible')"
         (f"UPDATE monoped_trials SET height_m = 50 WHERE trial = {FEASIBLE}", "has a height_m above 10"),
         (f"UPDATE monoped_trials SET energy_j = -5 WHERE trial = {FEASIBLE}", "its energy_j is negative"),
         (f"UPDATE monoped_trials SET electrical_energy_j = -5 WHERE trial = {FEASIBLE}", "electrical_energy_j is neg"),
-        ("UPDATE monoped_trials SET trial = -5 WHERE trial = 6", "not numbered from 0 on: trial -5"),
         ("UPDATE monoped_trials SET state = 'good' WHERE trial = 6", "trial 6 has an unknown state"),
         ("UPDATE monoped_trials SET generation = 7 WHERE trial = 6", "trial 7 has an impossible generation"),
         ("UPDATE monoped_trials SET shank_length_m = 3 WHERE trial = 6", "trial 6 has a shank_length_m beyond"),
@@ -139,10 +138,11 @@ def test_a_jump_that_differs_is_found(path):
     """Values that look right, in Optuna's tables too; of 50 trials, 50 are simulated again."""
     change(
         path,
-        *UNSEALED,
         "UPDATE monoped_trials SET energy_j = energy_j * 1.001 WHERE trial = 11",
         "UPDATE trial_values SET value = value * 1.001 WHERE trial_id = 12 AND objective = 1",
     )
+    reseal(path)
     assert verify(path).findings == ()
     (found,) = verify(path, simulate=100).findings
     assert found.startswith("trial 11 jumps otherwise: its energy_j is ")
+    assert "np." not in found

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from tests.cli.support import ROOT, own_process
+from tests.cli.support import ROOT, STORED, own_process
 
 WAITS = """
 import sys
@@ -46,6 +46,22 @@ def test_a_signal_ends_any_command_without_a_trace(tmp_path, number):
     _, said = process.communicate(timeout=100)
     assert (process.returncode, said) == (130, "interrupted\n")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("module", ["click", "difflib", "numpy"])
+def test_an_interrupt_while_modules_are_imported_ends_in_one_line(tmp_path, module):
+    """The module is one of ours that interrupts its own import, as Ctrl-C would at that moment."""
+    (tmp_path / f"{module}.py").write_text(
+        "import os, signal, time\nos.kill(os.getpid(), signal.SIGINT)\ntime.sleep(9)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", "from pareto_monoped.__main__ import main; main()", "status", str(STORED)],
+        env=os.environ | {"PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr.strip()) == (130, "", "interrupted")
 
 
 ENDS = """

@@ -150,6 +150,8 @@ FACTS = {
     "objectives": {"height_m": "maximise", "energy_j": "minimise"},
     "best_at_0_8_m": {"energy_j": 23.456},
     "hash": "0123456789abcdef0123",
+    "content_hash": "fedcba9876543210" * 4,
+    "sealed": True,
     "strength": True,
     "settings": {"variables": dict.fromkeys("abcdefg"), "constraints": {"min_height_m": 0.6}},
 }
@@ -181,7 +183,8 @@ FACTS = {
         ({"best_at_0_8_m": {"energy_j": None}}, ("least energy at 0.8 m", "not reached")),
         ({}, ("time", "12.3 s, 2 designs/s")),
         ({"evaluations_per_second": None}, ("time", "12.3 s")),
-        ({}, ("hash", "0123456789abcdef")),
+        ({}, ("settings hash", "0123456789abcdef")),
+        ({}, ("content hash", "fedcba9876543210" * 2)),
     ],
 )
 def test_status_prints_each_fact_with_its_unit(monkeypatch, capsys, changes, words):

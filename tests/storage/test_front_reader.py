@@ -64,11 +64,12 @@ def test_the_front_is_read_without_the_other_trials_and_the_checkpoint(large):
     assert read_front(large).rows["trial"].equals(front)
     assert status(large)["front"] == len(front)
     change(large, f"UPDATE monoped_trials SET mass_kg = mass_kg + 1e-12 WHERE trial = {front[1]}")
-    with pytest.raises(DatabaseError, match=f"trial {front[1]} does not match its hash"):
-        read_front(large)
+    for reader in (read_front, status):
+        with pytest.raises(DatabaseError, match=f"trial {front[1]} does not match its hash"):
+            reader(large)
     change(large, f"DELETE FROM monoped_trials WHERE trial = {front[1]}")
     for reader in (read_front, status):
-        with pytest.raises(DatabaseError, match="trials of its kept front are missing"):
+        with pytest.raises(DatabaseError, match=f"where trial {front[1]} must be"):
             reader(large)
 
 
@@ -84,8 +85,23 @@ def test_the_front_is_read_without_the_other_trials_and_the_checkpoint(large):
 )
 def test_a_bent_kept_front_is_refused(large, statement, words):
     change(large, statement)
+    for reader in (read_front, status):
+        with pytest.raises(DatabaseError, match=words):
+            reader(large)
+
+
+@pytest.mark.parametrize(
+    ("statement", "words"),
+    [
+        ("UPDATE monoped_history SET seconds = seconds + 1 WHERE generation = 8", "row 8 of its history"),
+        ("UPDATE monoped_audits SET well_conditioned = 1", "of its audits does not match"),
+        ("DELETE FROM monoped_audits WHERE well_conditioned = 0", "of its audits is missing"),
+    ],
+)
+def test_status_checks_what_it_prints(large, statement, words):
+    change(large, statement)
     with pytest.raises(DatabaseError, match=words):
-        read_front(large)
+        status(large)
 
 
 @pytest.fixture

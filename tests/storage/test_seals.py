@@ -1,8 +1,12 @@
 """Damage to any stored number or text is refused, and named."""
 
+import hashlib
+import json
 import random
 import shutil
 import sqlite3
+import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,9 +14,14 @@ import pytest
 from pareto_monoped.errors import DatabaseError, InputError
 from pareto_monoped.storage import reader, seals
 from pareto_monoped.storage.base import FORMAT
+from pareto_monoped.storage.front_reader import read_front
 from pareto_monoped.storage.reader import read_study
+from pareto_monoped.storage.status import status
 from pareto_monoped.storage.store import Store
-from tests.study.support import change, made_database, made_evaluations, made_generation, made_study
+from pareto_monoped.study.run import run
+from tests.study.support import change, made_database, made_evaluations, made_generation, made_study, study_of
+
+TEXTS = ("state", "status", "reason", "motor", "hip_motor", "knee_motor")
 
 
 @pytest.fixture
@@ -139,3 +148,35 @@ def test_the_kept_front_is_the_front(tmp_path):
 def test_new_studies_have_the_format_with_a_hash(path):
     assert FORMAT == 2
     assert read_study(path).sealed
+
+
+def test_the_content_hash_does_not_depend_on_grouping(tmp_path):
+    study = study_of(evaluations=40, strength=False, algorithm={"name": "random"})
+    once = run(study, tmp_path / "once.db").data
+    for total in (3, 4, 25, 40):  # ends within generations of 16
+        parts = run(study, tmp_path / "parts.db", evaluations=total, workers=2).data
+        assert (parts.content_hash == once.content_hash) == (total == 40)
+    assert once.links != parts.links
+    assert status(tmp_path / "parts.db")["content_hash"] == once.content_hash
+    assert read_front(tmp_path / "parts.db").content_hash == once.content_hash
+    assert run(replace(study, seed=2), tmp_path / "other.db").data.content_hash != once.content_hash
+
+
+def test_the_content_hash_is_computed_from_what_is_documented(path):
+    """By hand, from the rows as they are read and SHA-256 alone."""
+    data = read_study(path)
+    connection = sqlite3.connect(path)
+    rows = {key: json.loads(text) for key, text in connection.execute("SELECT key, value FROM monoped_meta")}
+    study = {k: v for k, v in rows["study"].items() if k not in ("audit", "description", "evaluations", "stop")}
+    decisive = {"study": study, "contents": rows["contents"], "versions": rows["versions"]}
+    text = hashlib.sha256(json.dumps(decisive, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+    cursor = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
+    names = [column[0] for column in cursor.description]
+    text += json.dumps(names)
+    for row in cursor:
+        values = dict(zip(names, row, strict=True))
+        words = [values[n] or "" for n in names if n in TEXTS]
+        numbers = [float("nan") if values[n] is None else float(values[n]) for n in names if n not in TEXTS]
+        packed = struct.pack(f"<{len(numbers)}d", *numbers)
+        text += hashlib.sha256("\x1f".join(words).encode() + b"\x1e" + packed).hexdigest()[:16]
+    assert data.content_hash == hashlib.sha256(text.encode()).hexdigest()

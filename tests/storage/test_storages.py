@@ -2,6 +2,7 @@
 
 import os
 from contextlib import closing
+from functools import partial
 
 import numpy as np
 import optuna
@@ -12,12 +13,14 @@ from pareto_monoped.definition.study import study_from_dict
 from pareto_monoped.design import NAMES, PAPER_NAMES
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.measures import MEASURE_NAMES
+from pareto_monoped.storage.columns import LATER
+from pareto_monoped.storage.front_reader import read_front
 from pareto_monoped.storage.place import storage_of
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.status import status
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.run import run
-from tests.study.support import UNSEALED, made_database, made_evaluations, made_generation, made_study
+from tests.study.support import UNSEALED, change, made_database, made_evaluations, made_generation, made_study, reseal
 
 
 def one(number=2, first=6):
@@ -172,27 +175,49 @@ def test_a_study_without_trials(db):
     assert {"trial", "state", "hip_ratio", "height_m", "violation"} <= set(data.trials.columns)
 
 
-def test_a_study_of_format_1_gets_its_hash_when_it_goes_on(db, sql):
+def test_a_study_of_format_1_is_read_and_marked_and_never_sealed(db, sql):
     made_database(db)
+    sealed = read_study(db)
     sql(*UNSEALED)
-    before = read_study(db)
-    assert not before.sealed
-    with Store(db, made_study()) as store:
+    assert not read_study(db).sealed
+    assert not read_front(db).sealed
+    assert not status(db)["sealed"]
+    assert read_study(db).trials.equals(sealed.trials)
+    with pytest.raises(DatabaseError, match=r"is of version 0\.2\.0 or earlier, which is only read"):
+        Store(db, made_study())
+    assert not read_study(db).sealed
+
+
+def test_a_study_gets_the_columns_that_came_later_when_it_is_opened_for_writing(tmp_path):
+    path, last = tmp_path / "s.db", LATER[-1].name
+    made_database(path)
+    before = read_study(path)
+    change(path, f"ALTER TABLE monoped_trials DROP COLUMN {last}")
+    reseal(path)
+    with Store(path, made_study()) as store:
         store.add(made_generation(made_study(), 2, 6, made_evaluations([0.75], [8.5]), state={"after": 2}))
-    after = read_study(db)
-    assert after.sealed
+    after = read_study(path)
     assert after.trials[:6].equals(before.trials)
-    sql("UPDATE monoped_trials SET energy_j = energy_j + 1e-9 WHERE trial = 2 OR trial = 4")
-    with pytest.raises(DatabaseError, match="trial 4 does not match its hash"):
-        read_study(db)
+    assert len(after.trials) == 7
 
 
-def test_a_study_of_format_1_with_trials_missing_gets_no_hash(db, sql):
+@pytest.mark.parametrize("kept", range(4))
+def test_a_study_cannot_be_made_one_of_an_earlier_version_to_hide_an_edit(db, sql, kept):
+    """Each of the statements is left out once, and once none that touches the version."""
+    made_database(db)
+    sql("UPDATE monoped_trials SET height_m = 2.0 WHERE trial = 3")
+    sql(*(statement for k, statement in enumerate(UNSEALED) if k != kept))
+    for reader in (read_study, read_front, status, partial(Store, study=made_study())):
+        with pytest.raises(DatabaseError, match="is damaged"):
+            reader(db)
+
+
+def test_trials_of_a_study_of_format_1_are_numbered_from_0_on(db, sql):
     made_database(db)
     sql(*UNSEALED, "DELETE FROM monoped_trials WHERE trial = 2")
-    with pytest.raises(DatabaseError, match="not numbered from 0 to 4"), Store(db, made_study()):
-        pass
-    assert not read_study(db).sealed
+    for reader in (read_study, read_front, status):
+        with pytest.raises(DatabaseError, match="trial 3 stands in place 2, where trial 2 must be"):
+            reader(db)
 
 
 def test_a_transaction_that_fails_leaves_no_link(db):

@@ -1,11 +1,13 @@
 """Studies with plain numbers in place of jumps, for tests of storage that no physics matters to."""
 
 import sqlite3
+from contextlib import closing
 from datetime import UTC, datetime
 
 import numpy as np
 import pytest
 
+import pareto_monoped
 from pareto_monoped.definition import provenance
 from pareto_monoped.definition.study import study_from_dict
 from pareto_monoped.errors import StudyError
@@ -16,6 +18,9 @@ from pareto_monoped.search.registry import make_algorithm
 from pareto_monoped.search.scoring import judge
 from pareto_monoped.storage.columns import Generation
 from pareto_monoped.storage.meta import StudyMeta
+from pareto_monoped.storage.optuna_tables import study_digests
+from pareto_monoped.storage.place import storage_of
+from pareto_monoped.storage.seals import BY_OPTUNA, OPTUNA_STUDY, ROWS, Sealer, row_digests
 from pareto_monoped.storage.store import Store, create_database
 
 MINIMAL = {"name": "s", "evaluations": 10}
@@ -136,8 +141,20 @@ UNSEALED = (
     "DROP TABLE monoped_seals",
     "DROP TABLE monoped_front",
     "UPDATE monoped_meta SET value = '1' WHERE key = 'format'",
+    f"UPDATE monoped_meta SET value = replace(value, '{pareto_monoped.__version__}', '0.2.0') WHERE key = 'versions'",
 )
-"""Statements that make a study one of format 1, which has no running hash: what else refuses it is then seen."""
+"""Statements that make a study one of version 0.2.0, which has no running hash: what else refuses it is then seen."""
+
+
+def reseal(path):
+    """Compute the running hash of a study anew, as somebody who knows this code can after editing rows."""
+    with closing(storage_of(path).connect()) as connection, connection.transaction():
+        names = connection.columns("monoped_trials")
+        rows = connection.execute("SELECT * FROM monoped_trials ORDER BY trial").fetchall()
+        connection.execute("DELETE FROM monoped_seals")
+        written = {table: row_digests(connection.execute(sql)) for table, sql in ROWS.items()}
+        written |= {OPTUNA_STUDY: study_digests(connection), "optuna": {"0": BY_OPTUNA}}
+        Sealer(connection).add(written, 0, names, dict(zip(names, zip(*rows, strict=True), strict=True)))
 
 
 def search_among_motors(study, coordinates, best, generations=6, algorithm=None):

@@ -27,7 +27,7 @@ from pareto_monoped.storage.status import status
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.run import resume, run
 from pareto_monoped.study.simulator import load_simulator
-from tests.study.support import UNSEALED, change
+from tests.study.support import change, reseal
 
 ROOT = Path(__file__).parents[2]
 
@@ -208,7 +208,8 @@ def test_wall_time_counts_earlier_sessions(tmp_path):
     """With an hour on the clock from earlier sessions, a limit of half an hour is used up and one of two is not."""
     path, hour = tmp_path / "s.db", 3600.0
     run(made(), path, evaluations=20)
-    change(path, f"UPDATE monoped_history SET seconds = {hour}", *UNSEALED)
+    change(path, f"UPDATE monoped_history SET seconds = {hour}")
+    reseal(path)
     summary = run(replace(made(), stop=Stop(wall_time_s=0.5 * hour)), path)
     assert (summary.stop_reason, summary.new_evaluations) == ("wall_time", 0)
     summary = run(replace(made(), stop=Stop(wall_time_s=2.0 * hour)), path, evaluations=40)
@@ -275,7 +276,8 @@ def test_status_says_how_far_it_is(whole):
 
 def test_trials_that_do_not_follow_from_the_checkpoint_are_refused(tmp_path):
     run(made(), tmp_path / "s.db", evaluations=25)
-    change(tmp_path / "s.db", "UPDATE monoped_trials SET hip_ratio = hip_ratio + 0.01 WHERE trial = 22", *UNSEALED)
+    change(tmp_path / "s.db", "UPDATE monoped_trials SET hip_ratio = hip_ratio + 0.01 WHERE trial = 22")
+    reseal(tmp_path / "s.db")
     with pytest.raises(DatabaseError, match="trials 20 to 24 do not follow"):
         resume(tmp_path / "s.db", evaluations=60)
 
@@ -330,7 +332,8 @@ def test_ctrl_c_ends_after_the_generation_and_a_second_process_is_refused(tmp_pa
 def test_a_bent_checkpoint_is_refused(whole, tmp_path, bent):
     path = tmp_path / "s.db"
     path.write_bytes(whole[0].read_bytes())
-    change(path, f"UPDATE monoped_checkpoint SET {bent}", *UNSEALED)
+    change(path, f"UPDATE monoped_checkpoint SET {bent}")
+    reseal(path)
     with pytest.raises(DatabaseError, match="checkpoint is damaged"):
         resume(path, evaluations=80)
     assert read_study(path).trials.equals(whole[2].trials)
@@ -351,7 +354,9 @@ def test_a_disk_that_is_full_when_a_study_is_made_leaves_nothing(tmp_path):
     assert done.returncode == 1, done.stderr
     assert done.stderr.splitlines()[-1].startswith("error: study database")
     assert "disk" in done.stderr
-    assert not (tmp_path / "s.db").exists()
+    assert "run the study again" in done.stderr  # there is nothing to resume
+    assert "resume" not in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
 
 
 def test_a_disk_that_fills_up_loses_nothing(tmp_path):
