@@ -14,6 +14,8 @@ def main() -> None:
     """Run the command line; ``cli.process`` takes over the signals."""
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _interrupted)
+    # To look for plugins of pydantic, of which none is wanted, would take a tenth of a short command.
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     from pareto_monoped.cli import main as run_command
 
     run_command()

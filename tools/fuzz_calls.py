@@ -163,6 +163,11 @@ def _option(dice: random.Random, option: click.Option, command: str) -> list[str
         return [flag, dice.choice((*TEXTS, *ODD_PATHS))]
     if isinstance(option.type, click.types.IntParamType | click.types.FloatParamType):
         return [flag, dice.choice(("1", "2", "3", *NUMBERS))]
-    pools = {"motor": MOTORS, "hip_motor": MOTORS, "knee_motor": MOTORS, "calibration_name": CALIBRATIONS}
+    pools: dict[str, tuple[str, ...]] = {
+        "motor": MOTORS,
+        "hip_motor": MOTORS,
+        "knee_motor": MOTORS,
+        "calibration_name": CALIBRATIONS,
+    }
     pools |= {"objectives": NAMES, "weights": NUMBERS, "compromise": NUMBERS, "formats": ("urdf", "none", "", EVIL)}
     return [flag, dice.choice(pools.get(name, ASSIGNED))]

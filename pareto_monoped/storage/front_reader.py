@@ -39,10 +39,10 @@ def read_front(db: StudyPlace) -> StudyFront:
     """Read the front that a study keeps, and check it; that of a study of format 1 is made from its trials."""
     with undamaged(db):
         with storage_of(db).reading() as connection:
-            foreign = foreign_count(connection)
             if has_seals(connection):
-                return _kept(connection, db, foreign)
-        data = read_study(db)
+                return _kept(connection, db)
+            data = read_study(db)
+            foreign = foreign_count(connection, len(data.trials))
         rows, used = data.front(), in_use(data.trials)
         return StudyFront(
             db=db,
@@ -56,7 +56,7 @@ def read_front(db: StudyPlace) -> StudyFront:
         )
 
 
-def _kept(connection: Connection, db: StudyPlace, foreign: int) -> StudyFront:
+def _kept(connection: Connection, db: StudyPlace) -> StudyFront:
     checked = checked_front(connection, db)
     meta = checked.meta
     study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
@@ -73,7 +73,7 @@ def _kept(connection: Connection, db: StudyPlace, foreign: int) -> StudyFront:
         meta=meta,
         rows=front,
         used=used,
-        foreign=foreign,
+        foreign=foreign_count(connection, checked.seals.trials),
         parts=checked.seals.parts,
         sealed=True,
     )

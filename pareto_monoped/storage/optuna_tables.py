@@ -137,23 +137,19 @@ class OptunaTables:
         self._objectives = study.objectives
         self._free = [i for i, name in enumerate(NAMES) if name in study.free]
         limits = {name: coordinates.limits(name) for name in study.free}
-        self._distributions = {
-            name: json.dumps(
-                {
-                    "name": "FloatDistribution",
-                    "attributes": {"step": None, "low": low, "high": high, "log": False},
-                }
-            )
-            for name, (low, high) in limits.items()
+        # Optuna stores them with each parameter of each trial, half of a database; it reads this shorter form, too
+        # (optuna.distributions.json_to_distribution).
+        distributions: dict[str, dict[str, Any]] = {
+            name: {"type": "float", "low": low, "high": high} for name, (low, high) in limits.items()
         }
         # Optuna stores the position of a category, and shows the category itself.
         self._motors: dict[str, tuple[str, ...]] = {
             choice.name: tuple(motor.name for motor in choice.motors) for choice in coordinates.space.choices
         }
-        for name, motors in self._motors.items():
-            self._distributions[name] = json.dumps(
-                {"name": "CategoricalDistribution", "attributes": {"choices": motors}}
-            )
+        distributions |= {name: {"type": "categorical", "choices": motors} for name, motors in self._motors.items()}
+        self._distributions = {
+            name: json.dumps(distribution, separators=(",", ":")) for name, distribution in distributions.items()
+        }
 
     def insert(self, connection: Connection, generation: Generation) -> dict[str, dict[str, str]]:
         """Insert a generation's rows within the open transaction, and return what the running hash has of them.

@@ -51,19 +51,29 @@ _BLOCK = 20_000
 
 def trial_frame(names: list[str], rows: Iterable[tuple[Any, ...]], db: StudyPlace) -> pd.DataFrame:
     """Return trials as a data frame from column names and rows, which are read block by block; refuse damaged ones."""
-    left = iter(rows)
+    parts: dict[str, list[Any]] = {}
+    for block in trial_blocks(names, rows, db):
+        for name, values in block.items():
+            parts.setdefault(name, []).append(values)
+    # Column by column, and not copied into the frame: otherwise a large study would be in memory twice.
+    columns = {name: _joined(parts.pop(name)) for name in list(parts)}
+    return pd.DataFrame(columns, copy=False)
+
+
+def trial_blocks(names: list[str], rows: Iterable[tuple[Any, ...]], db: StudyPlace) -> Iterator[dict[str, Any]]:
+    """Yield trials block by block, at least one, each as column -> values of its type; refuse damaged ones."""
+    left, texts = iter(rows), dict[str, str]()
     try:
-        frames = [_frame(names, list(islice(left, _BLOCK)))]
+        yield _typed_columns(names, list(islice(left, _BLOCK)), texts)
         while block := list(islice(left, _BLOCK)):
-            frames.append(_frame(names, block))
+            yield _typed_columns(names, block, texts)
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise DatabaseError(
             f"study database {str(db)!r}: its trials are damaged ({type(error).__name__}: {error}); restore a copy"
         ) from None
-    return pd.concat(frames, ignore_index=True)
 
 
-def _frame(names: list[str], rows: list[tuple[Any, ...]]) -> pd.DataFrame:
+def _typed_columns(names: list[str], rows: list[tuple[Any, ...]], texts: dict[str, str]) -> dict[str, Any]:
     columns: dict[str, tuple[Any, ...]] = dict.fromkeys(names, ())
     if rows:
         columns = dict(zip(names, zip(*rows, strict=True), strict=True))
@@ -72,15 +82,24 @@ def _frame(names: list[str], rows: list[tuple[Any, ...]]) -> pd.DataFrame:
     known = [*REQUIRED, *(column.name for column in COLUMNS if column.name not in REQUIRED)]
     ordered = [*known, *(name for name in columns if name not in known)]
     # A column that only a later version knows is read as a number, as every measure is.
-    return pd.DataFrame({name: _typed(columns[name], _DTYPES.get(name, "float64")) for name in ordered})
+    return {name: _typed(columns[name], _DTYPES.get(name, "float64"), texts) for name in ordered}
 
 
-def _typed(values: tuple[Any, ...], dtype: str) -> Any:
+def _typed(values: tuple[Any, ...], dtype: str, texts: dict[str, str]) -> Any:
     if dtype == "str":
-        return pd.array(["" if value is None else str(value) for value in values], dtype="str")
+        # The same text is kept once, not once per row.
+        shared = [texts.setdefault(word, word) for word in ("" if value is None else str(value) for value in values)]
+        return pd.array(shared, dtype="str")
     if dtype == "int64":
         return np.array(values, dtype=np.int64)
     return np.array([np.nan if value is None else value for value in values], dtype=np.float64)
+
+
+def _joined(parts: list[Any]) -> Any:
+    """Return the values of all parts."""
+    if isinstance(parts[0], np.ndarray):
+        return np.concatenate(parts)
+    return pd.concat([pd.Series(part) for part in parts], ignore_index=True).array
 
 
 def with_motors(trials: pd.DataFrame, study: Study, meta: StudyMeta, db: StudyPlace) -> pd.DataFrame:

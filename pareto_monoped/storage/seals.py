@@ -13,6 +13,7 @@ import json
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -236,9 +237,8 @@ def numbering_findings(numbers: Any, count: int) -> list[str]:
 def seals_of_trials(connection: Connection, db: StudyPlace) -> Seals:
     """Read the chain, and raise ``DatabaseError`` unless exactly the trials that it has are stored, each once."""
     seals = read_seals(connection, db)
-    numbers = np.fromiter(
-        (row[0] for row in connection.execute("SELECT trial FROM monoped_trials ORDER BY trial")), int
-    )
+    rows = connection.execute("SELECT trial FROM monoped_trials ORDER BY trial")
+    numbers = np.fromiter(chain.from_iterable(rows), np.int64)
     if findings := numbering_findings(numbers, seals.trials):
         raise damaged(db, findings)
     return seals

@@ -12,6 +12,7 @@ from pareto_monoped.design import HEADLINE_HEIGHT_M
 from pareto_monoped.pareto.front import best_at_height
 from pareto_monoped.pareto.objectives import hypervolume
 from pareto_monoped.storage.base import undamaged
+from pareto_monoped.storage.connection import Connection
 from pareto_monoped.storage.kept_front import STATES, KeptFront, checked_front, foreign_count
 from pareto_monoped.storage.meta import StudyMeta
 from pareto_monoped.storage.place import StudyPlace, storage_of
@@ -44,7 +45,7 @@ def read_summary(db: StudyPlace) -> Summary:
     """
     with undamaged(db), storage_of(db).reading() as connection:
         if not has_seals(connection):
-            return _computed(db, foreign_count(connection))
+            return _computed(connection, db)
         checked = checked_front(connection, db)
         last = connection.execute(f"{ROWS['history']} DESC LIMIT 1").fetchall()
         audits = connection.execute(ROWS["audits"]).fetchall()
@@ -64,7 +65,7 @@ def read_summary(db: StudyPlace) -> Summary:
             counts=kept.counts,
             seconds=float(last[0][3]) if last else 0.0,
             ill_conditioned=sum(1 for row in audits if not row[1]),
-            foreign=foreign_count(connection),
+            foreign=foreign_count(connection, checked.seals.trials),
             content_hash=content_hash(checked.meta, checked.seals.parts),
             sealed=True,
         )
@@ -76,7 +77,7 @@ def _summary(values: NDArray[np.float64], **known: Any) -> Summary:
     return Summary(front=values[:, :-2], heights_m=values[:, -2], energies_j=values[:, -1], **known)
 
 
-def _computed(db: StudyPlace, foreign: int) -> Summary:
+def _computed(connection: Connection, db: StudyPlace) -> Summary:
     """Compute the summary of a study of format 1, which keeps no front."""
     from pareto_monoped.storage.reader import read_study
 
@@ -90,7 +91,7 @@ def _computed(db: StudyPlace, foreign: int) -> Summary:
         counts={state: states.count(state) for state in STATES},
         seconds=data.wall_time_s,
         ill_conditioned=len(data.ill_conditioned),
-        foreign=foreign,
+        foreign=foreign_count(connection, len(data.trials)),
         content_hash=data.content_hash,
         sealed=False,
     )

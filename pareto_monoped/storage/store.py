@@ -166,7 +166,8 @@ class Store:
     def foreign_count(self) -> int:
         """Count how many of Optuna's trials are not of this package."""
         with self._storage.translated():
-            return foreign_count(self._connection)
+            (own,) = self._connection.execute("SELECT count(*) FROM monoped_trials").fetchone()
+            return foreign_count(self._connection, int(own))
 
     def drop_foreign(self, numbers: Sequence[int], generations: Mapping[int, int]) -> None:
         """Delete trials of an Optuna user, by Optuna's ``numbers``.
