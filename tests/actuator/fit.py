@@ -148,6 +148,7 @@ def screw_clashes(screw: Part, other: Part) -> list[str]:
 def clashes(actuator: Actuator, clearance_mm: float = 0.2) -> list[str]:
     """Every pair of parts that share material, or turn past each other with less than the clearance."""
     parts = {part.name: part for part in actuator.parts}
+    own = {part.name: rings(part) for part in actuator.parts}
     found = []
     for a, b in combinations(actuator.parts, 2):
         pair = frozenset((a.name, b.name))
@@ -157,11 +158,11 @@ def clashes(actuator: Actuator, clearance_mm: float = 0.2) -> list[str]:
             # Planet, bush, pin and its screw on one axis: nested, seen from that axis. All others: side by side.
             if a.phase_rad != b.phase_rad:
                 needed = clearance_mm if a.group != b.group else 0.0
-                if heights_overlap(a, b) and side_by_side_mm(a, b) < needed:
+                if heights_overlap(own[a.name], own[b.name]) and side_by_side_mm(a, b) < needed:
                     found.append(f"{a.name} and {b.name}: {side_by_side_mm(a, b):.3f} mm, {needed} needed")
                 continue
             one_axis = abs(a.pitch_radius_mm - b.pitch_radius_mm) < 1e-9
-            rings_a, rings_b = (rings_about_own_axis(part) if one_axis else rings(part) for part in (a, b))
+            rings_a, rings_b = (rings_about_own_axis(part) if one_axis else own[part.name] for part in (a, b))
         elif is_fastener(a) or is_fastener(b):
             screw, other = (a, b) if is_fastener(a) else (b, a)
             found += screw_clashes(screw, other)
@@ -176,13 +177,13 @@ def clashes(actuator: Actuator, clearance_mm: float = 0.2) -> list[str]:
             if web_gap_mm(carrier, planet) < clearance_mm:
                 found.append(f"{carrier.name} and {planet.name}: {web_gap_mm(carrier, planet):.3f} mm between them")
             turned = replace(carrier, prisms=tuple(p for p in carrier.prisms if not isinstance(p.outline, Spread)))
-            rings_a, rings_b = rings(turned), rings(planet)
+            rings_a, rings_b = rings(turned), own[planet.name]
         else:
-            rings_a, rings_b = rings(a), rings(b)
+            rings_a, rings_b = own[a.name], own[b.name]
         rolling = {Role.BEARING, Role.BUSH} & {a.role, b.role} or "planet_washer" in pair
         turning = a.group != b.group and not rolling
         needed = clearance_mm if turning else 0.0
-        least = min(gap_mm(x, y) for x in rings_a for y in rings_b if not x.fits(y))
+        least = min(gap_mm(x, y) for x in distinct(rings_a) for y in distinct(rings_b) if not x.fits(y))
         if least < needed - 1e-9:
             found.append(f"{a.name} and {b.name}: {least:.3f} mm, {needed} needed")
     return found
@@ -209,8 +210,13 @@ def side_by_side_mm(a: Part, b: Part) -> float:
     return float(apart) - sum(max(outer_mm(prism.outline) for prism in part.prisms) for part in (a, b))
 
 
-def heights_overlap(a: Part, b: Part) -> bool:
-    return any(min(x.z1, y.z1) > max(x.z0, y.z0) for x in rings(a) for y in rings(b))
+def distinct(found: list[Ring]) -> list[Ring]:
+    """Rings of which no two have the same radii, heights and toothing: those of parts on a circle are all alike."""
+    return list({(r.r0, r.r1, r.z0, r.z1, id(r.outline), id(r.holes)): r for r in found}.values())
+
+
+def heights_overlap(a: list[Ring], b: list[Ring]) -> bool:
+    return any(min(x.z1, y.z1) > max(x.z0, y.z0) for x in distinct(a) for y in distinct(b))
 
 
 def centres_mm(part: Part) -> np.ndarray:

@@ -65,18 +65,25 @@ def test_every_winner_keeps_every_limit(name):
 def least_width(gears, motor, settings=SETTINGS):
     """By the slow rating, from the least width allowed upwards; None if no width up to the limits is enough.
 
-    The planets' needles must hold as well.
+    The planets' needles must hold as well. Of ten widths the last is tried first: if it does not hold, none of them is
+    taken, though a narrower one might. Such a width would be missing here and make a test fail.
     """
     data = SETTINGS.parts.gears
     least = (DATA.flank_safety, DATA.root_safety, DATA.overload_flank_safety, DATA.overload_root_safety)
     high = min(1.5 * gears.module_mm * gears.sun_teeth, 40.0 * gears.module_mm)
-    for steps in range(60, int(np.floor(10.0 * high + 1e-6)) + 1):
+
+    def holds(steps):
         if not bearing_rules.needles_hold(motor, gears, steps / 10.0, settings):
-            continue
+            return False
         safety, _ = iso6336.rate(
             gears, motor, steps / 10.0, SETTINGS, ring_wall=data.ring_rim_modules * gears.module_mm, sun_bore=None
         )
-        if all(got >= wanted for one in safety.values() for got, wanted in zip(one, least, strict=True)):
+        return all(got >= wanted for one in safety.values() for got, wanted in zip(one, least, strict=True))
+
+    widths = range(60, int(np.floor(10.0 * high + 1e-6)) + 1)
+    for ten in (widths[k : k + 10] for k in range(0, len(widths), 10)):
+        if holds(ten[-1]):
+            steps = next(steps for steps in ten if holds(steps))
             return max(steps / 10.0, np.ceil(60.0 * gears.module_mm - 1e-9) / 10.0)
     return None
 

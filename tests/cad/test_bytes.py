@@ -11,6 +11,7 @@ from pareto_monoped.cad.kernel import process
 from pareto_monoped.cad.kernel.process import step_files
 from pareto_monoped.cad.kernel.solids import solid_from
 from pareto_monoped.cad.product import build_product, step_assembly
+from pareto_monoped.geometry.roles import Role
 
 _EXPORTS = """
 import sys
@@ -32,8 +33,12 @@ def exports(place, *cases):
 
 
 def test_step_files_of_both_actuators_come_out_the_same_twice(product):
-    # An ISSPG and an ESSPG: gears have the most faces, whose order must not change. All else is left out for time.
-    units = tuple(unit for unit in product.robot.units if unit.name.endswith("_actuator"))
+    # An ISSPG and an ESSPG: gears have the most faces, whose order must not change. Most else is left out for time.
+    units = tuple(
+        dataclasses.replace(unit, parts=tuple(part for part in unit.parts if part.role in (Role.GEAR, Role.CARRIER)))
+        for unit in product.robot.units
+        if unit.name.endswith("_actuator")
+    )
     actuators = build_product(dataclasses.replace(product.robot, units=units), product.pose)
     assembly = step_assembly(actuators, "monoped")
     one = step_files(assembly)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from pareto_monoped.cad import export
 from pareto_monoped.cad.as_built import as_built
 from pareto_monoped.cad.check import run as strength
 from pareto_monoped.cad.check.result import STRENGTH
@@ -116,6 +117,15 @@ def test_the_record_makes_the_same_job_again(gentle, tmp_path):
     assert not record_job(tmp_path / "design.json", folder=tmp_path / "x").strength
 
 
+@pytest.fixture
+def strength_alone(monkeypatch):
+    """Exports of this process check nothing but strength, and that where they are asked to."""
+    monkeypatch.setattr(
+        export, "run_checks", lambda *_, factors, **__: () if factors is None else (strength.check_strength(factors),)
+    )
+
+
+@pytest.mark.usefixtures("strength_alone")
 def test_a_design_that_breaks_is_refused_in_one_line(actuator_map, calibration, tmp_path):
     with pytest.raises(CheckError) as caught:
         export_design(WILD, actuator_map, calibration, tmp_path / "robot", formats=(), strength=True)
@@ -127,6 +137,7 @@ def test_a_design_that_breaks_is_refused_in_one_line(actuator_map, calibration, 
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.usefixtures("strength_alone")
 def test_nobody_asked_and_every_file_says_so(actuator_map, calibration, tmp_path):
     made = export_design(WILD, actuator_map, calibration, tmp_path / "robot", formats=())
     assert made.record["strength"] is False
@@ -193,11 +204,11 @@ def test_jobs_ask_as_their_study_did(tmp_path, monkeypatch):
 
 
 def test_no_design_of_a_front_under_strength_is_refused(tmp_path, monkeypatch, calibration):
-    """Twenty designs over the front, as built: rounding their lengths moves no factor by more than the check allows."""
+    """Designs over the front, as built: rounding their lengths moves no factor by more than the check allows."""
     monkeypatch.chdir(tmp_path)
     values = {
         "name": "front",
-        "evaluations": 400,
+        "evaluations": 200,
         "strength": True,
         "audit": False,
         "variables": {
@@ -209,8 +220,8 @@ def test_no_design_of_a_front_under_strength_is_refused(tmp_path, monkeypatch, c
     run(study_from_dict(values, source="test"), tmp_path / "front.db")
     data = read_study(tmp_path / "front.db")
     front = data.front()
-    assert len(front) >= 15
-    spread = front.iloc[np.unique(np.linspace(0, len(front) - 1, 20).round().astype(int))]
+    assert len(front) >= 10
+    spread = front.iloc[np.unique(np.linspace(0, len(front) - 1, 12).round().astype(int))]
     designs = [Design.from_array(row) for row in spread[list(NAMES)].to_numpy()]
     stored = array_factors([d.as_array() for d in designs], data.case_kit, calibration)
     required = np.array([joint.required for joint in TABLE])

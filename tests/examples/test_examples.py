@@ -19,7 +19,10 @@ MAKES = {
     "export_a_pick": ("files,", ("built.db", "built.html", "built_leg/design.json", "built_leg/assembly.step")),
 }
 """Example -> words that it prints, and files that it makes."""
-FEWER = {"own_sampler": ("n_trials=100", "n_trials=40")}
+FEWER = {
+    "own_sampler": ("n_trials=100", "n_trials=40"),
+    "export_a_pick": ("evaluations=400", "evaluations=120"),
+}
 """Example -> words in it, and others that take less time."""
 
 
@@ -27,6 +30,7 @@ def test_every_example_is_known_here():
     assert {path.stem for path in EXAMPLES.glob("*.py")} == set(MAKES)
 
 
+@pytest.mark.usefixtures("unchecked")
 @pytest.mark.parametrize("name", MAKES)
 def test_an_example_runs(name, tmp_path, monkeypatch, capsys):
     path = EXAMPLES / f"{name}.py"

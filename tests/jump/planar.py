@@ -69,6 +69,25 @@ def law(r, values, inverse):
 
 
 @numba.njit(cache=True)
+def solved(left, right):
+    """Solution of equations with a symmetric, positive definite matrix by elimination; both arguments are lost.
+
+    Numba takes ten times as long to compile a call of LAPACK, which is more than all jumps take here.
+    """
+    for i in range(len(right)):
+        for j in range(i + 1, len(right)):
+            factor = left[j, i] / left[i, i]
+            for k in range(i + 1, len(right)):
+                left[j, k] -= factor * left[i, k]
+            right[j] -= factor * right[i]
+    for i in range(len(right) - 1, -1, -1):
+        for j in range(i + 1, len(right)):
+            right[i] -= left[i, j] * right[j]
+        right[i] /= left[i, i]
+    return right
+
+
+@numba.njit(cache=True)
 def acceleration(q, v, motor, m, mode):
     """Of the coordinates.
 
@@ -124,7 +143,7 @@ def acceleration(q, v, motor, m, mode):
             if mode[3 + j] == 1:
                 left[i, i] += virtual[j]
                 right[i] += virtual[j] * push[j] * side[j]
-        a = np.linalg.solve(left, right)
+        a = solved(left, right)
         n, t = pull_n - up @ a, pull_t - along @ a
         found[0] = 0
         if depth > 0 and m.slip * abs(t) <= m.mu * n:

@@ -66,7 +66,11 @@ def test_every_entry_of_the_papers_designs_is_what_it_says(design):
     assert all(getattr(balance, f"{entry}_j") > 0.0 for entry in (*entries, "stops_absorbed", "contact"))
 
 
-@pytest.mark.parametrize("designs", [PAPER, RANDOM], ids=["paper", "random"])
+@pytest.mark.parametrize(
+    "designs",
+    [PAPER, RANDOM[:30], pytest.param(RANDOM[30:], marks=pytest.mark.long)],
+    ids=["paper", "random", "more"],
+)
 def test_the_balance_closes_to_a_thousandth(designs):
     """Without the integrator's own loss, which is an entry too, to a fifth of a percent."""
     for design in designs:

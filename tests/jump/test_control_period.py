@@ -126,7 +126,7 @@ def converged(designs):
 
 def test_held_torques_act_neither_early_nor_late():
     """Energies scatter around the converged ones; read from the state as it is, they are 1 percent low."""
-    designs = np.vstack([CASES[:, :7], np.random.default_rng(3).uniform(LOWER, UPPER, (16, len(LOWER)))])
+    designs = np.vstack([CASES[:, :7], np.random.default_rng(3).uniform(LOWER, UPPER, (8, len(LOWER)))])
     exact = converged(designs)
     found = Evaluator(map_for("VT8020"), PRESENT)(designs)
     energy = found.energy_j / exact.energy_j - 1.0

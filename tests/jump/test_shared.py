@@ -72,7 +72,7 @@ class Cut(Pace):
         return [start, *(place for place in self.places if start < place < stop), stop]
 
 
-@settings(max_examples=12)
+@settings(max_examples=6)
 @given(places=st.sets(st.integers(1, len(DESIGNS) * SAMPLES - 1), max_size=9))
 def test_wherever_they_are_cut_jumps_are_the_same(maps, alone, pool, places):
     values, motors, varied, found = alone

@@ -30,6 +30,12 @@ def origin():
     )
 
 
+@pytest.fixture(scope="module")
+def drawn(product, origin):
+    """The drawing of the assembly."""
+    return assembly_drawing(product, origin)
+
+
 def test_an_export_draws_the_parts_that_are_made_and_no_others(exported):
     with (exported.folder / "bom.csv").open(newline="") as stream:
         made = {row["part"] for row in csv.DictReader(stream) if row["made_or_bought"] == "made"}
@@ -53,8 +59,8 @@ def test_a_title_block_says_what_the_part_is_and_where_it_comes_from(exported):
     assert record["made_by"] in said
 
 
-def test_the_assembly_lists_its_items_in_the_order_of_the_parts_list(product, origin):
-    page, *_ = pages(assembly_drawing(product, origin))
+def test_the_assembly_lists_its_items_in_the_order_of_the_parts_list(product, drawn):
+    page, *_ = pages(drawn)
     rows = list(csv.DictReader(io.StringIO(parts_list(product))))
     heights = {text: y for text, _, y in page.texts}
     names = [row["part"].replace("_", " ") for row in rows]
@@ -65,8 +71,8 @@ def test_the_assembly_lists_its_items_in_the_order_of_the_parts_list(product, or
     assert (page.width_mm, page.height_mm) == pytest.approx((841.0, 594.0), abs=1e-3)
 
 
-def test_each_item_has_at_most_one_balloon_and_most_have_one(product, origin):
-    page, *_ = pages(assembly_drawing(product, origin))
+def test_each_item_has_at_most_one_balloon_and_most_have_one(product, drawn):
+    page, *_ = pages(drawn)
     numbers = [text for text, x, _ in page.texts if text.isdigit() and x < 500.0]
     balloons = [text for text in numbers if int(text) <= len(product.unique)]
     assert len(balloons) == len(set(balloons))
@@ -74,8 +80,8 @@ def test_each_item_has_at_most_one_balloon_and_most_have_one(product, origin):
     assert len(balloons) > 0.55 * len(product.unique)
 
 
-def test_the_exploded_sheets_number_every_item_once(product, origin):
-    _, *exploded, _ = pages(assembly_drawing(product, origin))
+def test_the_exploded_sheets_number_every_item_once(product, drawn):
+    _, *exploded, _ = pages(drawn)
     assert exploded
     above_title_mm = 65.0
     numbers = [text for page in exploded for text, _, y in page.texts if text.isdigit() and y > above_title_mm]
@@ -93,8 +99,8 @@ def test_the_sheet_of_the_cables_notes_a_bend_that_is_too_tight(product, monkeyp
     assert f"{tight.warning[0].upper()}{tight.warning[1:]}." in said
 
 
-def test_the_sheet_of_the_cables_says_how_to_cut_them(product, origin):
-    *_, sheet = pages(assembly_drawing(product, origin))
+def test_the_sheet_of_the_cables_says_how_to_cut_them(product, drawn):
+    *_, sheet = pages(drawn)
     said = [text for text, _, _ in sheet.texts]
     for letter, cable in zip("ABCD", cables(product.robot), strict=True):
         assert f"{cable.start} to {cable.end}" in said
@@ -141,10 +147,10 @@ def _begins_at(point, circles):
     return any(abs(np.hypot(*(point - np.array(circle.centroid.coords[0]))) - 4.0) < 0.05 for circle in circles)
 
 
-def test_drawings_are_the_same_bytes_each_time(product, origin):
+def test_drawings_are_the_same_bytes_each_time(product, origin, drawn):
     parts = product.unique[:12]
     assert part_drawings(parts, origin) == part_drawings(parts, origin)
-    assert assembly_drawing(product, origin) == assembly_drawing(product, origin)
+    assert assembly_drawing(product, origin) == drawn
 
 
 def test_some_drawings_are_the_same_as_all_of_them_from_their_first_number(product, origin):
