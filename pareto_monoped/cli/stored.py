@@ -3,6 +3,8 @@
 import errno
 import re
 import webbrowser
+from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -230,25 +232,47 @@ def trials(db: StudyPlace, csv_file: Path | None, parquet: Path | None, state: s
 
     Columns have their stored names and SI units. Without a file the table goes to stdout, as CSV.
     """
-    from pareto_monoped.storage.reader import read_study
+    from pareto_monoped.files import replacing
+    from pareto_monoped.storage.reader import read_trials
 
     if parquet is not None:
         require_extra("parquet", "--parquet", instead="use --csv")
-    rows = read_study(db).trials
-    if state is not None:
-        rows = rows[rows["state"] == state]
+
+    count = 0
+
+    def chosen() -> "Iterator[DataFrame]":
+        """Yield the trials block by block: a study of a million needs no more memory than a small one."""
+        nonlocal count
+        for rows in read_trials(db):
+            wanted = rows if state is None else rows[rows["state"] == state]
+            count += len(wanted)
+            yield wanted
+
     if csv_file is None and parquet is None:
-        echo(rows.to_csv(index=False, lineterminator="\n"), nl=False)
-        return
-    from pareto_monoped.files import write_bytes, write_text
-
+        for text in _csv(chosen()):
+            echo(text, nl=False)
     if csv_file is not None:
-        write_text(csv_file, rows.to_csv(index=False, lineterminator="\n"), force=force)
-        _say(csv_file, rows)
+        with replacing(csv_file, force=force) as new, new.open("w", encoding="utf-8", newline="") as stream:
+            stream.writelines(_csv(chosen()))
+        echo(f"wrote {csv_file} ({count} trials)", err=True)
     if parquet is not None:
-        write_bytes(parquet, rows.to_parquet(index=False), force=force)
-        _say(parquet, rows)
+        count = 0
+        with replacing(parquet, force=force) as new:
+            _write_parquet(chosen(), new)
+        echo(f"wrote {parquet} ({count} trials)", err=True)
 
 
-def _say(path: Path, rows: "DataFrame") -> None:
-    echo(f"wrote {path} ({len(rows)} trials)", err=True)
+def _csv(blocks: "Iterator[DataFrame]") -> Iterator[str]:
+    for k, rows in enumerate(blocks):
+        yield rows.to_csv(index=False, header=k == 0, lineterminator="\n")
+
+
+def _write_parquet(blocks: "Iterator[DataFrame]", path: Path) -> None:
+    from pyarrow import Table
+    from pyarrow.parquet import ParquetWriter
+
+    tables = (Table.from_pandas(rows, preserve_index=False) for rows in blocks)
+    first = next(tables)
+    with ParquetWriter(path, first.schema) as writer:
+        for table in chain((first,), tables):
+            writer.write_table(table)

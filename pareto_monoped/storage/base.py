@@ -11,7 +11,6 @@ from contextlib import AbstractContextManager, closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pareto_monoped.config import parsed_json
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.storage.address import Server
 from pareto_monoped.storage.connection import Connection
@@ -163,6 +162,8 @@ def _of_later(connection: Connection, tables: Collection[str]) -> str:
     """Return what a study of format 1 has that only later ones have, so that its running hash was taken off; or ""."""
     if left := [name for name in _SINCE_2 if name in tables]:
         return f"the table {left[0]!r}"
+    from pareto_monoped.config import parsed_json
+
     row = connection.execute("SELECT value FROM monoped_meta WHERE key = 'versions'").fetchone()
     version = str(parsed_json(row[0])["pareto-monoped"]) if row else "no version"
     earlier = re.match(r"(\d+)\.(\d+)(?:\D|$)", version)

@@ -31,6 +31,7 @@ from pareto_monoped.storage.seals import (
     content_hash,
     damaged,
     has_seals,
+    missing_findings,
     numbering_findings,
     read_seals,
     trial_digests,
@@ -296,6 +297,32 @@ class StudyData:
         return self.trials[mask].sort_values(chosen.names[0], kind="stable", ignore_index=True)
 
 
+def read_trials(db: StudyPlace) -> Iterator[pd.DataFrame]:
+    """Yield all trials as ``read_study`` returns them, block by block, at least one, each checked before it is yielded.
+
+    Raises:
+        DatabaseError: as by ``read_study``, where the damage is met.
+    """
+    with undamaged(db), storage_of(db).reading() as connection:
+        seals = read_seals(connection, db) if has_seals(connection) else None
+        rows = connection.execute(ROWS["meta"]).fetchall()
+        if seals is not None and (findings := seals.row_findings("meta", rows)):
+            raise damaged(db, findings)
+        meta = meta_of_rows(rows, db)
+        study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
+        cursor, count = connection.execute("SELECT * FROM monoped_trials ORDER BY trial"), 0
+        for values in trial_blocks(connection.columns("monoped_trials"), cursor, db):
+            findings = numbering_findings(values["trial"], count)
+            count += len(values["trial"])
+            if seals is not None:
+                findings += seals.trial_findings(values, values["trial"])
+            if findings:
+                raise damaged(db, findings)
+            yield with_agility(with_motors(pd.DataFrame(values, copy=False), study, meta, db))
+        if seals is not None and count < seals.trials:
+            raise damaged(db, missing_findings(count, seals.trials))
+
+
 def read_study(db: StudyPlace) -> StudyData:
     """Read a study database, finished or still growing, and check it against its running hash.
 
@@ -324,8 +351,9 @@ def read_study(db: StudyPlace) -> StudyData:
             raise ValueError("a hypervolume or time of its history is not finite")
         named = with_agility(with_motors(trials, study, meta, db))
         values = {name: trials[name].to_numpy() for name in trials}
-        findings = numbering_findings(values["trial"], 0 if seals is None else seals.trials)
+        findings = numbering_findings(values["trial"])
         if seals is not None:
+            findings += missing_findings(len(trials), seals.trials)
             findings += seals.trial_findings(values, values["trial"])
             findings += [line for table in rows for line in seals.row_findings(table, rows[table])]
         if findings:

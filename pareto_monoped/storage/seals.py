@@ -227,11 +227,15 @@ def read_seals(connection: Connection, db: StudyPlace) -> Seals:
     return Seals(db=db, links=links, parts=joined, written=written)
 
 
-def numbering_findings(numbers: Any, count: int) -> list[str]:
-    """Return what is wrong with the numbers of all ``count`` trials in stored order, which are 0, 1, 2 and so on."""
-    wrong = np.flatnonzero(numbers != np.arange(len(numbers)))[:1]
-    findings = [f"trial {numbers[place]} stands in place {place}, where trial {place} must be" for place in wrong]
-    return findings or [f"{count - len(numbers)} trials are missing"] * (len(numbers) < count)
+def numbering_findings(numbers: Any, first: int = 0) -> list[str]:
+    """Return what is wrong with the numbers of trials in stored order, which are ``first``, the next one and so on."""
+    wrong = np.flatnonzero(numbers != np.arange(first, first + len(numbers)))[:1]
+    return [f"trial {numbers[k]} stands in place {first + k}, where trial {first + k} must be" for k in wrong]
+
+
+def missing_findings(count: int, sealed: int) -> list[str]:
+    """Return what is wrong if there are ``count`` trials and the chain has so many ``sealed`` ones."""
+    return [f"{sealed - count} trials are missing"] if count < sealed else []
 
 
 def seals_of_trials(connection: Connection, db: StudyPlace) -> Seals:
@@ -239,7 +243,7 @@ def seals_of_trials(connection: Connection, db: StudyPlace) -> Seals:
     seals = read_seals(connection, db)
     rows = connection.execute("SELECT trial FROM monoped_trials ORDER BY trial")
     numbers = np.fromiter(chain.from_iterable(rows), np.int64)
-    if findings := numbering_findings(numbers, seals.trials):
+    if findings := numbering_findings(numbers) + missing_findings(len(numbers), seals.trials):
         raise damaged(db, findings)
     return seals
 
