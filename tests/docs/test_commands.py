@@ -73,7 +73,9 @@ def searches() -> dict[str, tuple[Path, str]]:
 
 
 @pytest.mark.parametrize("page", [p for p in PAGES if commands(p)], ids=lambda p: str(p.relative_to(ROOT)))
-def test_commands_of_the_page_run_and_print_what_it_shows(page, tmp_path, monkeypatch, capsys, tmp_path_factory, searches):
+def test_commands_of_the_page_run_and_print_what_it_shows(
+    page, tmp_path, monkeypatch, capsys, tmp_path_factory, searches
+):
     shutil.copytree(ROOT / "studies", tmp_path / "studies", ignore=shutil.ignore_patterns("*.db*"))
     (tmp_path / "reports").mkdir()
     monkeypatch.chdir(tmp_path)
