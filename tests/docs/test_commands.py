@@ -6,12 +6,11 @@ Numbers may differ by 2 percent, as the last digits of a simulation may between 
 the chaotic literal model gives, may differ by more for the same reason: there only the words are compared.
 """
 
-import os
 import re
+import runpy
 import shlex
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -127,14 +126,11 @@ def test_the_study_of_the_readme_finds_designs_within_its_limits(tmp_path):
     assert len(stored.front()) > 5
 
 
-def test_the_program_of_the_readme_runs(tmp_path):
-    shown = blocks("python")
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
-    run = subprocess.run(
-        [sys.executable, "-W", "error", "-c", shown], cwd=tmp_path, env=environment, capture_output=True, text=True
-    )
-    assert run.returncode == 0, run.stderr
-    lines = [line.split() for line in run.stdout.splitlines()]
+def test_the_program_of_the_readme_runs(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "program.py").write_text(blocks("python"), encoding="utf-8")
+    runpy.run_path("program.py", run_name="__main__")
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert lines[0] == ["stiffness_n_per_m", "height_m", "energy_j", "status", "reason"]
     assert lines[6] == ["trial", "height_m", "energy_j", "own_slides"]
     assert len(lines) > 8
