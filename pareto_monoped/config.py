@@ -4,7 +4,8 @@ import difflib
 import json
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
@@ -131,11 +132,13 @@ def checked(kind: type[T], values: Mapping[str, Any], *, source: str, error: typ
             cure.
     """
     try:
-        return TypeAdapter(kind).validate_python(dict(values))
+        found: T = _adapter(kind).validate_python(dict(values))
+        return found
     except ValidationError as problem:
         raise error(f"{source}: {_line(kind, problem)}") from None
 
 
+_adapter: Callable[[Any], TypeAdapter[Any]] = cache(TypeAdapter)  #: Making one takes milliseconds.
 _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")  #: What pydantic calls an unknown key.
 
 

@@ -1,6 +1,7 @@
 """Settings that hold for every test, and what all processes of a test run share."""
 
 import fcntl
+import functools
 import gc
 import os
 import pickle
@@ -39,6 +40,14 @@ def pytest_collection_finish() -> None:
     gc.collect()
     gc.freeze()
     gc.set_threshold(20_000)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _schema_steps() -> None:
+    """For each new study, Optuna has all steps of its schema run three times as modules: keep them, 50 ms each time."""
+    from alembic.util import pyfiles
+
+    pyfiles.load_module_py = functools.cache(pyfiles.load_module_py)
 
 
 @pytest.fixture(scope="session")

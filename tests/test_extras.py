@@ -102,11 +102,11 @@ def test_searching_choosing_and_reporting_need_no_cad(tmp_path):
     import pareto_monoped as pm
     from pareto_monoped.cli import _run
     stored = pm.run(pm.Study.define(name="s", evaluations=40, algorithm="random"), "s.db")
-    stored.pick("knee")
+    knee = stored.pick("knee").trial
     pm.plot_front(stored)
     assert _run(["report", "s.db", "-o", "s.html", "--figures", "figures"]) == 0
     assert _run(["simulate", "--case", "C", "--audit", "--model", "c.xml"]) == 0
-    assert _run(["robust", "s.db", "--samples", "256"]) == 0
+    assert _run(["robust", "s.db", "--trial", str(knee), "--samples", "256"]) == 0
     """
     run = without_extras(code, tmp_path)
     assert run.returncode == 0, run.stderr

@@ -90,6 +90,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--kills", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--kinds", type=int, help="kinds of study, drawn at random; all if not given")
     parser.add_argument("--keep", type=Path, help="folder for studies that were lost or damaged")
     arguments = parser.parse_args()
     if _LIBRARY not in os.environ:
@@ -102,8 +103,9 @@ def main() -> int:
         generator = random.Random(arguments.seed)
         ready: dict[tuple[str, str], Scenario] = {}
         began = _cpu_s()
+        kinds = _kinds() if arguments.kinds is None else generator.sample(_kinds(), arguments.kinds)
         while tally.kills < arguments.kills:
-            for key in generator.sample(kinds := _kinds(), len(kinds)):
+            for key in generator.sample(kinds, len(kinds)):
                 if tally.kills >= arguments.kills:
                     break
                 if key not in ready:

@@ -4,7 +4,6 @@ from collections.abc import Iterable
 from itertools import islice
 from typing import Any
 
-import cma
 import numpy as np
 
 from pareto_monoped.definition.algorithms import WeightedSettings
@@ -94,7 +93,9 @@ class WeightedSearch(Algorithm):
             self.ask()
             self.tell(scores)
 
-    def _fresh(self) -> cma.CMAEvolutionStrategy:
+    def _fresh(self) -> Any:
+        import cma  # and with it Matplotlib: a report, which needs the cost only, would wait for them
+
         generator = np.random.default_rng([self._seed, self._run])
         dimensions = len(self._start)
         return cma.CMAEvolutionStrategy(

@@ -10,6 +10,7 @@ import pytest
 from pareto_monoped import cli
 from pareto_monoped.cli.options import Where, executor_at, where
 from pareto_monoped.compute.crew import Crew, Limits
+from pareto_monoped.compute.processes import LocalProcesses
 from tests.cli.support import STORED
 from tests.compute import tasks
 from tests.compute.dask_here import ROOT, DaskHere, until
@@ -95,14 +96,20 @@ def test_a_worker_with_another_cad_package_makes_no_exports(tmp_path, capsys):
 
 
 def test_run_resume_robust_sensitivity_and_verify_have_their_jumps_made_there(tmp_path, monkeypatch, capsys):
-    """The results are the same wherever they are made, so the tasks are counted."""
-    given = []
+    """The results are the same wherever they are made, so the tasks are counted. One process serves all commands."""
+    given, asked = [], []
+
+    class Kept(LocalProcesses):
+        def close(self):
+            pass
 
     class Counting(Crew):
         def submit(self, function, /, *arguments, **named):
             given.append(function)
             return super().submit(function, *arguments, **named)
 
+    kept = Kept(1, 1)
+    monkeypatch.setattr("pareto_monoped.jump.peers.LocalProcesses", lambda *counts: asked.append(counts) or kept)
     monkeypatch.setattr("pareto_monoped.jump.peers.Crew", Counting)
     file, db = tmp_path / "s.toml", str(tmp_path / "s.db")
     file.write_text(STUDY)
@@ -120,3 +127,5 @@ def test_run_resume_robust_sensitivity_and_verify_have_their_jumps_made_there(tm
             words[3] = str(json.loads(capsys.readouterr().out)[0]["trial"])
         assert cli._run([*words, "--processes", "1"]) == 0, capsys.readouterr().err
         assert len(given) > before, words
+    assert [count for count, _ in asked] == [1] * 5
+    LocalProcesses.close(kept)

@@ -59,13 +59,15 @@ def test_why_a_design_was_picked_is_said_in_lines_that_fit_a_terminal(capsys, tm
     assert max(len(line) for line in err.splitlines() if str(tmp_path) not in line) <= 80
 
 
-def test_a_case_of_the_paper_is_exported(capsys, tmp_path):
+def test_a_case_of_the_paper_is_exported_with_another_motor(capsys, tmp_path):
     folder = tmp_path / "case"
-    code, out, err = run(capsys, "export", "--case", "nominal", "--formats", "dxf", "-o", folder)
+    code, out, err = run(capsys, "export", "--case", "C", "--motor", "U12", "--formats", "dxf", "-o", folder)
     assert code == 0
     assert [line.split()[0] for line in out.splitlines()] == ["searched", "as"]
     assert "checking" in err
-    assert json.loads((folder / "design.json").read_text())["source"] == {"case": "nominal"}
+    record = json.loads((folder / "design.json").read_text())
+    assert record["source"] == {"case": "C"}
+    assert record["motor"] == record["motor_data"]["name"] == "U12"
     assert sorted(path.name for path in (folder / "laser").iterdir()) == [
         "base_near_cheek.dxf",
         "hip_driver_plate.dxf",
@@ -107,14 +109,6 @@ def test_a_motor_named_for_both_joints_is_exported_as_one(capsys, tmp_path):
     assert len(names) > 20
     for name in names:
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "both" / name).read_bytes()
-
-
-def test_a_case_is_exported_with_another_motor(capsys, tmp_path):
-    code, _, _ = run(capsys, "export", "--case", "C", "--motor", "U12", "--formats", "dxf", "-o", tmp_path / "u12")
-    record = json.loads((tmp_path / "u12" / "design.json").read_text())
-    assert code == 0
-    assert record["motor"] == record["motor_data"]["name"] == "U12"
-    assert record["source"] == {"case": "C"}
 
 
 @pytest.mark.parametrize(

@@ -119,10 +119,14 @@ def test_the_site_fits_desk_and_phone_and_searches_without_a_network(site, pages
     asked, complaints = [], []
     page.on("request", lambda request: asked.append(request.url))
     page.on("pageerror", lambda error: complaints.append(str(error)))
-    for file in set(pages) - {(site / "index.html").resolve()}:  # which leads to another at once
-        page.goto(file.as_uri())
-        for width in (1280, 390):
-            page.set_viewport_size({"width": width, "height": 844})
+    files = set(pages) - {(site / "index.html").resolve()}  # which leads to another at once
+    # What is too wide for a desk is so for a phone, but for what only a desk has, which is the same on all pages.
+    at_desk = [file for file in files if file.stem in ("README", "measures", "commands")]
+    assert len(at_desk) == 4
+    for width, shown in ((390, files), (1280, at_desk)):
+        page.set_viewport_size({"width": width, "height": 844})
+        for file in shown:
+            page.goto(file.as_uri())
             over = page.evaluate("document.scrollingElement.scrollWidth - innerWidth")
             assert over <= 0, f"{file.name} is {over} px too wide at {width}"
     page.goto((site / "search.html").as_uri() + "?q=turnbuckles")

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
+from jupyter_client import KernelManager
 from nbclient import NotebookClient
 
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "notebooks").glob("*.ipynb"))
@@ -36,17 +37,29 @@ def test_a_notebook_is_kept_as_it_is_read(path):
     assert notebook.cells[0].source.startswith("# ")
 
 
+@pytest.fixture(scope="module")
+def kernel(tmp_path_factory):
+    """One kernel for all notebooks, which takes seconds to import everything, and the folder in which it works."""
+    folder = tmp_path_factory.mktemp("notebooks")
+    manager = KernelManager(kernel_name="python3")
+    manager.start_kernel(cwd=folder, env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))})
+    yield manager, folder
+    manager.shutdown_kernel(now=True)
+
+
 @pytest.mark.filterwarnings("ignore")  # of the kernel's own libraries
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_a_notebook_runs(path, tmp_path, monkeypatch):
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, sys.path)))
+def test_a_notebook_runs(path, kernel):
+    manager, folder = kernel
     notebook = nbformat.read(path, as_version=4)
-    client = NotebookClient(notebook, timeout=600, kernel_name="python3", resources={"metadata": {"path": tmp_path}})
+    notebook.cells.insert(0, nbformat.v4.new_code_cell("%reset -f"))  # it has no name of another notebook
+    client = NotebookClient(notebook, km=manager, timeout=600)
     client.execute()
+    client.kc.stop_channels()
     made = outputs(notebook)
     assert [output.text for output in made if output.output_type == "stream" and output.name == "stderr"] == []
     text = "\n".join(output.get("text") or output.get("data", {}).get("text/plain", "") for output in made)
     for words, count in SHOWS[path.stem].items():
         assert text.count(words) >= count, words
     assert sum("image/png" in output.get("data", {}) for output in made) == FIGURES[path.stem]
-    assert list(tmp_path.iterdir()) == []
+    assert list(folder.iterdir()) == []

@@ -2,7 +2,6 @@
 
 import base64
 import struct
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -118,14 +117,10 @@ def grown(data: StudyData, count: int) -> StudyData:
 
 
 class Tab:
-    """A page in a browser without a network, with everything that it complained about or asked for."""
+    """A tab in a browser without a network, with everything that its page complained about or asked for."""
 
-    def __init__(
-        self, browser, file: Path, width: int = 1440, height: int = 900, fragment: str = "", **options
-    ) -> None:
-        self.context = browser.new_context(
-            viewport={"width": width, "height": height}, reduced_motion="reduce", **options
-        )
+    def __init__(self, browser, **options) -> None:
+        self.context = browser.new_context(reduced_motion="reduce", **options)
         self.context.set_offline(True)
         self.page = self.context.new_page()
         self.complaints: list[str] = []
@@ -134,12 +129,27 @@ class Tab:
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("dialog", lambda dialog: self.complaints.append(f"dialog {dialog.message}") or dialog.dismiss())
         self.page.on("request", lambda request: self.requests.append(request.url))
+
+    def show(self, file: Path, width: int = 1440, height: int = 900, fragment: str = "", scheme: str = "light") -> None:
+        """Leave the present page for good, and load a file."""
+        self.page.goto("about:blank")
+        self.page.mouse.move(0, 0)
+        self.look(width, height, scheme)
+        self.complaints.clear()
+        self.requests.clear()
         self.page.goto(file.as_uri() + fragment)
         self.page.wait_for_function("() => document.getElementById('front-chart').data !== undefined")
         self.page.wait_for_selector("#parallel-chart canvas")
 
+    def look(self, width: int = 1440, height: int = 900, scheme: str = "light") -> None:
+        """A screen of this size, with these colours."""
+        if self.page.viewport_size != {"width": width, "height": height}:
+            self.page.set_viewport_size({"width": width, "height": height})
+        self.page.emulate_media(media="screen", color_scheme=scheme)
+
     def reset(self) -> None:
         """The view as it was at first, with the first design of the front selected."""
+        self.look()
         self.page.evaluate("document.getElementById('reset').click()")
         self.page.evaluate("window.scrollTo(0, 0)")
         self.page.focus("#front-chart")
@@ -207,30 +217,40 @@ class Tab:
         assert self.complaints == []
 
 
-@pytest.fixture(scope="module")
-def file(folder, payload, request) -> Path:
-    """The page of the small study, for one module of tests."""
-    made = folder / f"{request.module.__name__.rpartition('.')[2]}.html"
+@pytest.fixture(scope="session")
+def file(folder, payload) -> Path:
+    """The page of the small study."""
+    made = folder / "small.html"
     made.write_text(page(payload), encoding="utf-8")
     return made
 
 
-@pytest.fixture(scope="module")
-def shared(file, browser) -> "Iterator[Tab]":
-    """That page in a tab; each test resets it."""
-    tab = Tab(browser, file)
-    yield tab
-    tab.context.close()
+@pytest.fixture(scope="session")
+def shared(file, browser) -> Tab:
+    """That page in a tab, for all tests that a reset is enough for."""
+    tab = Tab(browser)
+    tab.show(file)
+    return tab
+
+
+@pytest.fixture(scope="session")
+def spare() -> list[Tab]:
+    """Tabs that no test uses: a new one takes longer than its page."""
+    return []
 
 
 @pytest.fixture
-def open_tab(browser):
-    tabs = []
+def open_tab(browser, spare):
+    """A function that loads a file in a tab; with options of Playwright, in a new one."""
+    used, closed = [], []
 
-    def opened(file: Path, **options) -> Tab:
-        tabs.append(Tab(browser, file, **options))
-        return tabs[-1]
+    def opened(file: Path, *, options=None, **look) -> Tab:
+        tab = Tab(browser, **options) if options else spare.pop() if spare else Tab(browser)
+        (closed if options else used).append(tab)
+        tab.show(file, **look)
+        return tab
 
     yield opened
-    for tab in tabs:
+    spare.extend(used)
+    for tab in closed:
         tab.context.close()

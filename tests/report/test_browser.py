@@ -14,29 +14,13 @@ from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.exports import model_of
 from pareto_monoped.report.page import build, page, write_report
-from tests.report.conftest import Tab, cut, grown
+from tests.report.conftest import cut, grown
 
 pytestmark = pytest.mark.browser
 
 
-@pytest.fixture(scope="module")
-def report(folder, payload):
-    file = folder / "report.html"
-    file.write_text(page(payload), encoding="utf-8")
-    return file
-
-
-@pytest.fixture(scope="module")
-def shared(report, browser):
-    """One tab for all tests that leave it as they found it."""
-    tab = Tab(browser, report)
-    yield tab
-    tab.context.close()
-
-
 @pytest.fixture
 def tab(shared):
-    shared.page.set_viewport_size({"width": 1440, "height": 900})
     shared.reset()
     return shared
 
@@ -47,11 +31,11 @@ def written(folder, name, sources):
     return file
 
 
-def test_asks_for_nothing_and_complains_of_nothing(tab, report):
+def test_asks_for_nothing_and_complains_of_nothing(tab, file):
     tab.scroll_through()
     assert tab.page.locator("#convergence canvas").count() == 2
     assert tab.page.locator("#map-chart canvas").count() == 2
-    tab.quiet(report)
+    tab.quiet(file)
 
 
 def test_bounds_that_limit_the_front_stand_beside_its_variables_and_not_before_it(tab, payload):
@@ -63,14 +47,14 @@ def test_bounds_that_limit_the_front_stand_beside_its_variables_and_not_before_i
     assert [note for note in card.at_bounds if note in header] == []
 
 
-def test_begins_with_the_knee_and_the_sentence(report, open_tab, payload):
-    tab = open_tab(report)
+def test_begins_with_the_knee_and_the_sentence(file, open_tab, payload):
+    tab = open_tab(file)
     (card,) = payload.studies
     assert f"Trial {card.trials.trial[card.picks[0].row]}" in tab.text("#subject")
     assert card.summary[0] in tab.text("header")
 
 
-def test_a_click_on_a_point_selects_it_everywhere(tab, payload, report):
+def test_a_click_on_a_point_selects_it_everywhere(tab, payload, file):
     (card,) = payload.studies
     at = len(card.front) - 1
     row = card.front[at]
@@ -84,7 +68,7 @@ def test_a_click_on_a_point_selects_it_everywhere(tab, payload, report):
     assert f"--trial {card.trials.trial[row]}" in tab.text("#commands")
     assert tab.page.get_attribute("#front-chart", "aria-valuenow") == str(at + 1)
     assert tab.page.locator("#time-charts svg").count() == 5
-    tab.quiet(report)
+    tab.quiet(file)
 
 
 def test_a_click_on_the_papers_diamond_shows_that_case(tab, payload):
@@ -190,7 +174,7 @@ def drag_axis(tab, name, top=0.1, bottom=0.5):
     tab.page.mouse.up()
 
 
-def test_a_range_on_an_axis_dims_the_front_outside_it(tab, payload, report):
+def test_a_range_on_an_axis_dims_the_front_outside_it(tab, payload, file):
     (card,) = payload.studies
     drag_axis(tab, "energy_j")
     low, high = (float(tab.page.input_value(f"[data-range=energy_j-{side}]")) for side in ("from", "to"))
@@ -205,7 +189,7 @@ def test_a_range_on_an_axis_dims_the_front_outside_it(tab, payload, report):
     assert [value == 1 for value in opacity] == inside
     tab.page.click("#clear-ranges")
     assert tab.page.input_value("[data-range=energy_j-from]") == ""
-    tab.quiet(report)
+    tab.quiet(file)
 
 
 def test_a_range_can_be_typed(tab, payload):
@@ -262,10 +246,10 @@ def test_switches_hide_and_show(tab):
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize(("width", "height"), [(1440, 900), (390, 844)])
-def test_nothing_sticks_out_sideways(tab, report, width, height, scheme):
-    tab.page.set_viewport_size({"width": width, "height": height})
+def test_nothing_sticks_out_sideways(tab, file, width, height, scheme):
+    tab.look(width, height)
     tab.scroll_through()
-    tab.page.emulate_media(color_scheme=scheme)
+    tab.look(width, height, scheme)
     # A change of the scheme is heard before the next frame.
     tab.page.evaluate("new Promise((done) => requestAnimationFrame(() => setTimeout(done)))")
     assert tab.page.evaluate("document.documentElement.scrollWidth") == width
@@ -277,7 +261,7 @@ def test_nothing_sticks_out_sideways(tab, report, width, height, scheme):
     for chart, tint in (("front-chart", tints[0]), ("convergence", tints[0]), ("map-chart", tints[1])):
         tab.page.locator(f"#{chart}").scroll_into_view_if_needed()
         tab.page.wait_for_function(f"(id) => ({found})(id).includes('{tint}')", arg=chart)
-    tab.quiet(report)
+    tab.quiet(file)
 
 
 def test_charts_have_words_and_controls_have_names(tab):

@@ -6,21 +6,17 @@ from types import SimpleNamespace
 
 import pytest
 
-from pareto_monoped.files import write_text
-from pareto_monoped.report.page import page
-
 
 @pytest.fixture(scope="module")
-def made(payload, folder) -> SimpleNamespace:
+def made(payload, file) -> SimpleNamespace:
     (card,) = payload.studies
-    file = folder / "shortlist.html"
-    write_text(file, page(payload))
     return SimpleNamespace(file=file, card=card)
 
 
 @pytest.fixture
-def tab(made, open_tab):
-    return open_tab(made.file)
+def tab(shared):
+    shared.reset()
+    return shared
 
 
 def go_to(tab, made, place):
@@ -122,8 +118,8 @@ def test_seven_do_not_fit(tab, made):
 
 
 @pytest.mark.parametrize(("width", "scheme"), [(1440, "light"), (1440, "dark"), (390, "light"), (390, "dark")])
-def test_by_keyboard_alone_at_any_width_and_in_any_colours(made, open_tab, width, scheme):
-    tab = open_tab(made.file, width=width, height=900, color_scheme=scheme)
+def test_by_keyboard_alone_at_any_width_and_in_any_colours(tab, made, width, scheme):
+    tab.look(width, 900, scheme)
     tab.page.focus("#keep button")
     tab.page.keyboard.press("Enter")
     assert tab.page.evaluate("document.activeElement.closest('#keep') !== null")
@@ -143,8 +139,8 @@ def test_by_keyboard_alone_at_any_width_and_in_any_colours(made, open_tab, width
     tab.quiet(made.file)
 
 
-def test_paper_is_light_whatever_the_screen(made, open_tab):
-    tab = open_tab(made.file, color_scheme="dark")
+def test_paper_is_light_whatever_the_screen(tab):
+    tab.look(scheme="dark")
     assert tab.page.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--ink').trim()") == "#e6edf3"
     tab.page.emulate_media(media="print", color_scheme="dark")
     assert tab.page.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--ink').trim()") == "#1b1f24"

@@ -116,15 +116,25 @@ def test_a_link_brings_the_same_view_back(tab, file, card, limits, open_tab):
     ["at=0:999999", "at=7:1", "range=height_m:low:", "range=none:1:2", "range=height_m:2:1", "shine=1", "x=none", "%",
      "layers=none", "hide=x", "at=0:case:none", "keep=0:x", "sort=none", "keep=0:1:%E0%A4%A"],
 )  # fmt: skip
-def test_a_damaged_address_is_left_out_with_one_line(file, payload, open_tab, damage):
-    tab = open_tab(file, fragment=f"#view=1&{damage}")
-    assert "is damaged or of another report" in tab.text("#page-note")
-    card = payload.studies[0]
-    assert trial_shown(tab) == card.trials.trial[card.picks[0].row]
+def test_a_damaged_address_is_left_out_with_one_line(tab, damage):
+    tab.page.evaluate("location.hash = '#view=1&log=x'")
+    tab.page.wait_for_function("() => document.getElementById('page-note').textContent === ''")
+    before = trial_shown(tab)
+    tab.page.evaluate("(fragment) => { location.hash = fragment; }", f"#view=1&log=y&{damage}")
+    tab.expects("#page-note", "is damaged or of another report")
+    assert trial_shown(tab) == before
+    assert [tab.page.is_checked(f"#log-{axis}") for axis in "xy"] == [True, False]
     assert tab.complaints == []
     # The first change writes a good one.
     tab.page.fill("#ask-height", "0.7")
     assert damage not in address(tab, "range=height_m:0.7:")
+
+
+def test_a_page_opened_at_a_damaged_address_is_as_without_one(file, card, open_tab):
+    tab = open_tab(file, fragment="#view=1&at=0:999999")
+    assert "is damaged or of another report" in tab.text("#page-note")
+    assert trial_shown(tab) == card.trials.trial[card.picks[0].row]
+    assert tab.complaints == []
 
 
 def test_undo_and_redo_walk_through_the_views(tab, card, limits):

@@ -153,4 +153,3 @@ def test_without_scripts_and_in_print_the_plain_table_is_there(file, payload, br
     tab.page.emulate_media(media="print")
     assert tab.page.is_visible("#table .plain")
     assert not tab.page.is_visible("#rows")
-    tab.page.emulate_media(media="screen")

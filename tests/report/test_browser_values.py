@@ -38,7 +38,8 @@ def mixed(data, resimulation) -> SimpleNamespace:
 def shared(mixed, folder, browser):
     file = folder / "mixed.html"
     file.write_text(page(mixed.payload), encoding="utf-8")
-    tab = Tab(browser, file)
+    tab = Tab(browser)
+    tab.show(file)
     tab.scroll_through()
     yield tab
     tab.context.close()

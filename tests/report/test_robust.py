@@ -15,7 +15,7 @@ from pareto_monoped.report.page import build, embedded_json, page
 from pareto_monoped.storage.extra_rows import read_robustness, read_sensitivity
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.uncertainty.settings import load_uncertainty
-from tests.report.conftest import Tab, grown, made, unpacked
+from tests.report.conftest import grown, made, unpacked
 
 ASSETS = resources.files("pareto_monoped") / "report" / "assets"
 
@@ -135,31 +135,28 @@ def test_the_scripts_read_the_same_numbers(shown, stored, browser):
 
 
 @pytest.mark.browser
-def test_the_page_tells_numerical_and_physical_tests_apart(shown, stored, folder, browser):
+def test_the_page_tells_numerical_and_physical_tests_apart(shown, stored, folder, open_tab):
     file = folder / "robust.html"
     file.write_text(page(shown), encoding="utf-8")
-    tab = Tab(browser, file)
-    try:
-        tab.scroll_through()
-        card = shown.studies[0]
-        for row in (card.robust.rows[0], next(row for row in card.front if row not in card.robust.rows)):
-            at = card.front.index(row)
-            tab.reset()
-            for _ in range(at):
-                tab.page.keyboard.press("ArrowRight")
-            trial = card.trials.trial[row]
-            tab.expects("#subject", f"Trial {trial}")
-            if trial in stored:
-                known = stored[trial].result
-                low, high = (getattr(known.measures["height_m"], end) for end in ("p05", "p95"))
-                tab.expects(
-                    "#audit", f"Tested as built in 256 jumps, nine of ten robots: height {low:.3f} m to {high:.3f} m"
-                )
-                tab.expects("#audit", f"{100 * known.failed:.1f} % of the jumps fail")
-                tab.expects("#audit", f"{100 * known.overloaded:.1f} % overload a part")
-            else:
-                tab.expects("#audit", f"Not tested as built: pareto-monoped robust DB --trial {trial}")
-            tab.expects("#audit", "neither rounding nor the time step")
-        tab.quiet(file)
-    finally:
-        tab.context.close()
+    tab = open_tab(file)
+    tab.scroll_through()
+    card = shown.studies[0]
+    for row in (card.robust.rows[0], next(row for row in card.front if row not in card.robust.rows)):
+        at = card.front.index(row)
+        tab.reset()
+        for _ in range(at):
+            tab.page.keyboard.press("ArrowRight")
+        trial = card.trials.trial[row]
+        tab.expects("#subject", f"Trial {trial}")
+        if trial in stored:
+            known = stored[trial].result
+            low, high = (getattr(known.measures["height_m"], end) for end in ("p05", "p95"))
+            tab.expects(
+                "#audit", f"Tested as built in 256 jumps, nine of ten robots: height {low:.3f} m to {high:.3f} m"
+            )
+            tab.expects("#audit", f"{100 * known.failed:.1f} % of the jumps fail")
+            tab.expects("#audit", f"{100 * known.overloaded:.1f} % overload a part")
+        else:
+            tab.expects("#audit", f"Not tested as built: pareto-monoped robust DB --trial {trial}")
+        tab.expects("#audit", "neither rounding nor the time step")
+    tab.quiet(file)
