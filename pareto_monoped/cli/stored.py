@@ -234,6 +234,7 @@ def trials(db: StudyPlace, csv_file: Path | None, parquet: Path | None, state: s
     """
     from pareto_monoped.files import replacing
     from pareto_monoped.storage.reader import read_trials
+    from pareto_monoped.storage.seals import UNSEALED
 
     if parquet is not None:
         require_extra("parquet", "--parquet", instead="use --csv")
@@ -244,6 +245,8 @@ def trials(db: StudyPlace, csv_file: Path | None, parquet: Path | None, state: s
         """Yield the trials block by block: a study of a million needs no more memory than a small one."""
         nonlocal count
         for rows in read_trials(db):
+            if count == 0 and not rows.attrs["sealed"]:
+                note(UNSEALED)
             wanted = rows if state is None else rows[rows["state"] == state]
             count += len(wanted)
             yield wanted

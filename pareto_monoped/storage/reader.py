@@ -318,7 +318,9 @@ def read_trials(db: StudyPlace) -> Iterator[pd.DataFrame]:
                 findings += seals.trial_findings(values, values["trial"])
             if findings:
                 raise damaged(db, findings)
-            yield with_agility(with_motors(pd.DataFrame(values, copy=False), study, meta, db))
+            trials = with_agility(with_motors(pd.DataFrame(values, copy=False), study, meta, db))
+            trials.attrs["sealed"] = seals is not None
+            yield trials
         if seals is not None and count < seals.trials:
             raise damaged(db, missing_findings(count, seals.trials))
 

@@ -19,6 +19,9 @@ from tests.study.support import made_database, made_evaluations, made_generation
 
 SYMBOLS = [variable.symbol for variable in VARIABLES if variable.name in PAPER_NAMES]
 
+ANCHORS = ("study_content_hash", "study_sealed")
+"""What ties a row to its study."""
+
 
 @pytest.fixture
 def db(tmp_path):
@@ -31,7 +34,9 @@ def test_front_as_json(db, capsys):
     assert cli(["front", db, "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)
     assert [row["trial"] for row in rows] == [4, 0, 3]
-    assert [list(row) for row in rows] == [["trial", "height_m", "energy_j", *PAPER_NAMES]] * 3
+    assert [list(row) for row in rows] == [["trial", "height_m", "energy_j", *PAPER_NAMES, *ANCHORS]] * 3
+    anchors = {(row["study_content_hash"], row["study_sealed"]) for row in rows}
+    assert anchors == {(read_study(Path(db)).content_hash, True)}
     assert (rows[0]["height_m"], rows[0]["energy_j"]) == (0.7, 8.0)
 
 
@@ -43,7 +48,7 @@ def test_front_as_csv_and_table(db, tmp_path, capsys):
     with (tmp_path / "f.csv").open(newline="") as stream:
         rows = list(csv.DictReader(stream))
     assert cli(["front", db, "--json"]) == 0
-    exact = json.loads(capsys.readouterr().out)
+    exact = [{n: row[n] for n in row if n not in ANCHORS} for row in json.loads(capsys.readouterr().out)]
     assert [{name: float(value) for name, value in row.items()} for row in rows] == exact
     assert cli(["front", db]) == 0
     lines = capsys.readouterr().out.splitlines()
@@ -243,7 +248,7 @@ def test_other_objectives_take_other_designs_of_the_stored_trials(db, capsys):
         )
     ]
     assert sorted(row["trial"] for row in rows) == sorted(expected)
-    assert [list(row) for row in rows] == [["trial", *names, *PAPER_NAMES]] * len(rows)
+    assert [list(row) for row in rows] == [["trial", *names, *PAPER_NAMES, *ANCHORS]] * len(rows)
 
 
 def test_three_objectives_fit_into_the_window(db, capsys):

@@ -145,6 +145,7 @@ METAVARS = {
     # A study by name, a study file, a database, a folder, a file in a format of one's choice.
     "STUDY", "STUDY.toml", "CAMPAIGN.toml", "DB", "DIR", "FILE",
     "ADDRESS",  # of a scheduler
+    "HASH",
 }  # fmt: skip
 PLAIN = re.compile(r"FILE\.(csv|gif|html|json|mp4|parquet|toml|xml)|DB \[DB \.\.\.\]")
 
