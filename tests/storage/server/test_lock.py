@@ -4,22 +4,13 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 from pareto_monoped.definition.study import load_study
-from pareto_monoped.storage import server as server_storage
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import resume, run
 from tests.study.same import assert_same_study
 
 ROOT = Path(__file__).parents[3]
 TOML = 'name = "s"\nevaluations = {n}\naudit = false\nstrength = false\n[algorithm]\nname = "nsga2"\npopulation = 20\n'
-
-
-@pytest.fixture
-def impatient(monkeypatch):
-    """Nobody is being killed: whoever holds a lock keeps it."""
-    monkeypatch.setattr(server_storage, "_WAIT_S", 0.1)
 
 
 def test_killed_in_mid_run_and_resumed(cluster, tmp_path, place, address):
