@@ -38,9 +38,9 @@ from tests.study.support import (
 DATA = Path(__file__).parents[1] / "storage" / "data"
 MOTORS = ("VT8020", "U8", "MN8014")
 ALL = ("VT8020", "U8", "U10", "U12", "MN8014", "MAD_M6C12")
-# AGE-MOEA2 compiles itself for some five seconds in every process; test_motor_pairs.py has it every time.
-AGE_MOEA2 = pytest.param("age_moea2", marks=pytest.mark.long)
-ALGORITHMS = ("nsga2", "sms_emoa", AGE_MOEA2, "surrogate", "optuna_nsga2", "optuna_tpe", "random")
+# AGE-MOEA2 compiles itself for some five seconds in every process, and TPE is slow; test_motor_pairs.py has both.
+SLOW = tuple(pytest.param(name, marks=pytest.mark.long) for name in ("age_moea2", "optuna_tpe"))
+ALGORITHMS = ("nsga2", "sms_emoa", "surrogate", "optuna_nsga2", "random", *SLOW)
 
 
 def several(motors=MOTORS, **more):
