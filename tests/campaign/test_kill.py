@@ -60,6 +60,7 @@ def test_killed_and_interrupted(tmp_path):
     safe(kill, 130)
     assert "its process was ended by SIGKILL; the study goes on later from what is stored" in second.messages
     assert {one["state"] for one in second.states} == {"unfinished"}
+    assert not (folder / "campaign-lock").exists()
 
     alone.mkdir()
     for member in load_campaign(path).members:
