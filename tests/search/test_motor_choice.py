@@ -229,7 +229,7 @@ def test_the_surrogate_tells_actuators_apart_by_what_they_do():
 @pytest.fixture(scope="module")
 def db(tmp_path_factory):
     path = tmp_path_factory.mktemp("motors") / "s.db"
-    run(several(ALL, evaluations=120, algorithm={"name": "nsga2", "population": 20}), path)
+    run(several(ALL, evaluations=120, audit=False, algorithm={"name": "nsga2", "population": 20}), path)
     return path
 
 
@@ -298,13 +298,13 @@ def test_a_database_with_an_unknown_motor_is_damaged(db, tmp_path):
 def test_another_list_or_order_is_refused_on_resume(db):
     """The order decides what an algorithm's numbers mean."""
     for motors in (("U8", "VT8020", *ALL[2:]), ALL[:5]):
-        study = several(motors, evaluations=120, algorithm={"name": "nsga2", "population": 20})
+        study = several(motors, evaluations=120, audit=False, algorithm={"name": "nsga2", "population": 20})
         with pytest.raises(StudyError, match=r"motor_\d"):
             run(study, db)
 
 
 def test_stopped_within_a_generation_and_resumed_it_is_as_in_one_go(db, tmp_path):
-    study = several(ALL, evaluations=120, algorithm={"name": "nsga2", "population": 20})
+    study = several(ALL, evaluations=120, audit=False, algorithm={"name": "nsga2", "population": 20})
     path = tmp_path / "cut.db"
     run(study, path, evaluations=47)
     assert len(read_study(path).trials) == 47

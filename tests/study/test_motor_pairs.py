@@ -194,7 +194,7 @@ def test_restored_from_state_and_history_it_continues_alike(interpreted, name):
 @pytest.fixture(scope="module")
 def db(tmp_path_factory):
     path = tmp_path_factory.mktemp("pairs") / "s.db"
-    run(pairs(evaluations=120, algorithm={"name": "nsga2", "population": 20}), path)
+    run(pairs(evaluations=120, audit=False, algorithm={"name": "nsga2", "population": 20}), path)
     return path
 
 
@@ -255,13 +255,13 @@ def test_a_database_with_an_unknown_motor_is_damaged(db, tmp_path):
 def test_other_lists_are_refused_on_resume(db):
     """With the same motors at other joints, too."""
     for hip, knee in ((KNEE, HIP), (HIP[::-1], KNEE), (HIP, KNEE[:2])):
-        study = pairs(hip, knee, evaluations=120, algorithm={"name": "nsga2", "population": 20})
+        study = pairs(hip, knee, evaluations=120, audit=False, algorithm={"name": "nsga2", "population": 20})
         with pytest.raises(StudyError, match=r"motor"):
             run(study, db)
 
 
 def test_stopped_within_a_generation_and_resumed_it_is_as_in_one_go(db, tmp_path):
-    study = pairs(evaluations=120, algorithm={"name": "nsga2", "population": 20})
+    study = pairs(evaluations=120, audit=False, algorithm={"name": "nsga2", "population": 20})
     path = tmp_path / "cut.db"
     run(study, path, evaluations=47)
     assert len(read_study(path).trials) == 47
