@@ -17,23 +17,6 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-@pytest.fixture
-def scheduler(tmp_path):
-    """The address of a scheduler with one worker."""
-    with DaskHere(tmp_path, workers=1) as here:
-        yield here.address
-
-
-def test_equal_to_studies_run_alone(tmp_path, scheduler):
-    several = standings(tmp_path, "seeds = [1, 2]", SMALL.replace("40", "20"))
-    assert run_campaign(several, cores=2, scheduler=scheduler, changed=lambda _: None, notify=lambda _: None)
-    for one in several:
-        assert (one.state, one.reason) == ("finished", "")
-        alone = tmp_path / f"{one.name}.db"
-        run(one.place.study, alone, workers=1)
-        assert read_study(one.place.db).trials.equals(read_study(alone).trials)
-
-
 @pytest.mark.parametrize("cores", [None, 2])
 def test_a_scheduler_that_does_not_answer_is_told_once_before_any_study(tmp_path, monkeypatch, cores):
     """Each study tried to connect by itself, and said so twice."""
@@ -49,7 +32,7 @@ def test_a_campaign_that_has_ended_needs_no_scheduler(tmp_path):
     assert run_campaign([], scheduler="tcp://127.0.0.1:1", changed=lambda _: None, notify=lambda _: None)
 
 
-def test_as_many_studies_run_as_the_scheduler_has_threads(tmp_path, monkeypatch):
+def test_as_many_studies_run_as_the_scheduler_has_threads_and_equal_those_run_alone(tmp_path, monkeypatch):
     """It was as many as the coordinator has cores."""
     monkeypatch.setattr("pareto_monoped.campaign.coordinator.cores_here", lambda: 1)
     several, most = standings(tmp_path, "seeds = [1, 2]", SMALL.replace("40", "20")), []
@@ -63,4 +46,8 @@ def test_as_many_studies_run_as_the_scheduler_has_threads(tmp_path, monkeypatch)
             notify=lambda _: None,
         )
     assert max(most) == 2
-    assert {one.state for one in several} == {"finished"}
+    for one in several:
+        assert (one.state, one.reason) == ("finished", "")
+        alone = tmp_path / f"{one.name}.db"
+        run(one.place.study, alone, workers=1)
+        assert read_study(one.place.db).trials.equals(read_study(alone).trials)

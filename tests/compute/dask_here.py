@@ -75,4 +75,4 @@ def until(condition, seconds=120.0):
     end_s = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < end_s, "waited in vain"
-        time.sleep(0.05)
+        time.sleep(0.02)

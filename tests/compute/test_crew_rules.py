@@ -25,6 +25,18 @@ def slow():
     return "slow"
 
 
+@pytest.fixture(autouse=True)
+def quick(monkeypatch):
+    """Nobody waits here for a real program: the crew looks at the clock more often."""
+    monkeypatch.setattr("pareto_monoped.compute.crew._TICK_S", 0.02)
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    """The user hears sooner that nobody is there."""
+    monkeypatch.setattr("pareto_monoped.compute.crew._PATIENT_S", 0.2)
+
+
 @contextmanager
 def crew(staff, *, check=lambda _: None, **limits):
     told = []
@@ -83,10 +95,10 @@ def test_a_worker_with_more_threads_is_preferred_by_more_seats():
 
 
 @pytest.mark.parametrize(("count", "words"), [(1, "its only worker does not answer"), (2, "none of its 2 workers ans")])
-def test_workers_that_all_hang_are_not_said_to_be_absent(count, words):
+def test_workers_that_all_hang_are_not_said_to_be_absent(impatient, count, words):
     """It was "has no worker; start scheduler and workers"."""
     workers = {str(number): Worker(later=(slow,)) for number in range(count)}
-    with crew(StaffHere(workers), task_s=0.2, times=0.0, absent_s=2.5) as (made, told):
+    with crew(StaffHere(workers), task_s=0.2, times=0.0, absent_s=0.6) as (made, told):
         problem = made.submit(slow).exception(timeout=60)
     assert isinstance(problem, WorkerError)
     assert str(problem).startswith(f"staff here: {words}")
@@ -171,7 +183,7 @@ def test_a_late_task_is_given_to_one_more_worker_only():
     with crew(StaffHere(workers)) as (made, _):
         late = made.submit(slow)
         until(lambda: sum(bool(worker.kept) for worker in workers.values()) == 2, 30)
-        time.sleep(1.5)  # longer than the second before a task is late
+        time.sleep(1.2)  # longer than the second before a task is late
         assert sum(len(worker.kept) for worker in workers.values()) == 2
         for worker in workers.values():
             worker.tell()
@@ -241,11 +253,11 @@ def test_workers_that_end_before_they_did_anything_are_given_up():
     assert told == []
 
 
-def test_nobody_comes():
-    with crew(StaffHere({}), absent_s=3.0) as (made, told):
+def test_nobody_comes(impatient):
+    with crew(StaffHere({}), absent_s=1.0) as (made, told):
         problem = made.submit(plain).exception(timeout=30)
-    assert str(problem) == "staff here: nobody came, for 3 s; call others"
-    assert told == ["staff here: nobody came; waiting up to 3 s"]
+    assert str(problem) == "staff here: nobody came, for 1 s; call others"
+    assert told == ["staff here: nobody came; waiting up to 1 s"]
 
 
 def test_a_staff_that_cannot_replace_a_worker_fails_the_tasks_rather_than_the_crew():
@@ -304,10 +316,10 @@ def test_a_task_that_comes_just_before_the_end_is_called_off():
 
 def test_a_first_task_may_take_longer_than_later_ones():
     worker = Worker(later=(hello,))
-    with crew(StaffHere({"one": worker}), task_s=0.5) as (made, told):
+    with crew(StaffHere({"one": worker}), task_s=0.1) as (made, told):
         task = made.submit(plain)
         until(lambda: worker.kept, 30)
-        time.sleep(1.5)
+        time.sleep(0.4)
         worker.tell()
         assert task.result(timeout=30) == "plain"
     assert told == []
@@ -315,14 +327,14 @@ def test_a_first_task_may_take_longer_than_later_ones():
 
 def test_a_task_may_take_a_multiple_of_the_longest_so_far():
     worker = Worker(later=(slow,))
-    with crew(StaffHere({"one": worker}), task_s=1.0, times=1e3) as (made, told):
+    with crew(StaffHere({"one": worker}), task_s=0.5, times=1e3) as (made, told):
         first = made.submit(slow)
         until(lambda: worker.kept, 30)
         time.sleep(0.1)
         worker.tell()
         first.result(timeout=30)
         second = made.submit(slow)
-        time.sleep(2.0)
+        time.sleep(0.9)
         assert told == []
         worker.tell()
         assert second.result(timeout=30) == "slow"

@@ -96,8 +96,22 @@ def test_leaves_the_global_random_state_alone(name):
     assert np.array_equal(before, np.random.get_state()[1])  # noqa: NPY002
 
 
-@pytest.mark.parametrize("told", [0, 1, 2, 5, 13])
-@pytest.mark.parametrize("name", NAMES)
+# Optuna's restore replays the history, however long; the model of each of its generations takes most of the time.
+SHORT = {"optuna_nsga2": (0, 2), "optuna_tpe": (0, 2)}
+
+
+def restores(names, all_told):
+    """Cases of an algorithm and how many generations it was told before; the slow and long ones are marked."""
+    cases = []
+    for param in names:
+        name, marks = (param, ()) if isinstance(param, str) else (param.values[0], param.marks)
+        for told in all_told:
+            slow = [pytest.mark.long] if told not in SHORT.get(name, all_told) else []
+            cases.append(pytest.param(name, told, marks=[*marks, *slow]))
+    return cases
+
+
+@pytest.mark.parametrize(("name", "told"), restores(NAMES, (0, 1, 2, 5, 13)))
 def test_restored_from_json_it_goes_on_exactly(name, told):
     definition = study(name)
     algorithm, history = search(definition, told)
@@ -227,8 +241,7 @@ def dtlz2(values, lower, upper):
     )
 
 
-@pytest.mark.parametrize("told", [0, 1, 6])
-@pytest.mark.parametrize("name", OF_THREE)
+@pytest.mark.parametrize(("name", "told"), restores(OF_THREE, (0, 2, 6)))
 def test_with_three_objectives_it_goes_on_exactly_from_json(name, told):
     definition = study(name, objectives=THREE)
     algorithm, history = search(definition, told, problem=dtlz2)

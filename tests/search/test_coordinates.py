@@ -118,7 +118,7 @@ def test_every_algorithm_chooses_from_the_list(actuator_map, name):
 def test_no_design_is_asked_for_twice_and_the_search_ends_when_there_is_no_other(actuator_map, name):
     """With nothing free but two short lists of gearboxes, all of them are tried once."""
     variables = dict.fromkeys(NAMES[:2], 0.4) | {"knee_ratio": {"lower": 4.0, "upper": 5.0}}
-    variables |= {"hip_ratio": {"lower": 5.0, "upper": 6.0}}
+    variables |= {"hip_ratio": {"lower": 5.0, "upper": 5.4}}
     variables |= {"stiffness_n_per_m": 20.0, "damping_n_s_per_m": 2.0, "torsional_stiffness_n_m_per_rad": 10.0}
     study = listed(variables=variables, algorithm={"name": name, "population": 10})
     coordinates, values = searched(study, actuator_map, 60)

@@ -70,8 +70,20 @@ def searched(space, settings, *, feasible, digits, restored):
     return np.vstack([values for values, _ in history]), algorithm.state()
 
 
-@pytest.mark.parametrize("population", [4, 10])
-@pytest.mark.parametrize(("feasible", "digits"), [(0.8, 12), (0.3, 1), (-1.0, 1)], ids=("most", "few", "none"))
+FEASIBLE = {"most": (0.8, 12), "few": (0.3, 1), "none": (-1.0, 1)}
+EVERY_TIME = {("few", 4), ("none", 4), ("most", 10)}
+"""How much is feasible, with which population: the other three pairs find nothing more, and take as long."""
+
+
+@pytest.mark.parametrize(
+    ("feasible", "digits", "population"),
+    [
+        pytest.param(*how, population, id=f"{many}-{population}", marks=marks)
+        for many, how in FEASIBLE.items()
+        for population in (4, 10)
+        for marks in [() if (many, population) in EVERY_TIME else pytest.mark.long]
+    ],
+)
 @pytest.mark.parametrize("space", SPACES)
 @pytest.mark.parametrize("name", ["nsga2", "sms_emoa"])
 def test_restored_before_each_generation_it_asks_for_the_same(name, space, feasible, digits, population):

@@ -38,9 +38,9 @@ from tests.study.support import (
 DATA = Path(__file__).parents[1] / "storage" / "data"
 MOTORS = ("VT8020", "U8", "MN8014")
 ALL = ("VT8020", "U8", "U10", "U12", "MN8014", "MAD_M6C12")
-# AGE-MOEA2 compiles itself for some five seconds in every process; test_motor_pairs.py has it every time.
-AGE_MOEA2 = pytest.param("age_moea2", marks=pytest.mark.long)
-ALGORITHMS = ("nsga2", "sms_emoa", AGE_MOEA2, "surrogate", "optuna_nsga2", "optuna_tpe", "random")
+# AGE-MOEA2 compiles itself for some five seconds in every process, and TPE is slow; test_motor_pairs.py has both.
+SLOW = tuple(pytest.param(name, marks=pytest.mark.long) for name in ("age_moea2", "optuna_tpe"))
+ALGORITHMS = ("nsga2", "sms_emoa", "surrogate", "optuna_nsga2", "random", *SLOW)
 
 
 def several(motors=MOTORS, **more):
@@ -229,7 +229,7 @@ def test_the_surrogate_tells_actuators_apart_by_what_they_do():
 @pytest.fixture(scope="module")
 def db(tmp_path_factory):
     path = tmp_path_factory.mktemp("motors") / "s.db"
-    run(several(ALL, evaluations=120, algorithm={"name": "nsga2", "population": 20}), path)
+    run(several(ALL, evaluations=120, audit=False, algorithm={"name": "nsga2", "population": 20}), path)
     return path
 
 
@@ -298,13 +298,13 @@ def test_a_database_with_an_unknown_motor_is_damaged(db, tmp_path):
 def test_another_list_or_order_is_refused_on_resume(db):
     """The order decides what an algorithm's numbers mean."""
     for motors in (("U8", "VT8020", *ALL[2:]), ALL[:5]):
-        study = several(motors, evaluations=120, algorithm={"name": "nsga2", "population": 20})
+        study = several(motors, evaluations=120, audit=False, algorithm={"name": "nsga2", "population": 20})
         with pytest.raises(StudyError, match=r"motor_\d"):
             run(study, db)
 
 
 def test_stopped_within_a_generation_and_resumed_it_is_as_in_one_go(db, tmp_path):
-    study = several(ALL, evaluations=120, algorithm={"name": "nsga2", "population": 20})
+    study = several(ALL, evaluations=120, audit=False, algorithm={"name": "nsga2", "population": 20})
     path = tmp_path / "cut.db"
     run(study, path, evaluations=47)
     assert len(read_study(path).trials) == 47

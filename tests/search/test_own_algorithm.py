@@ -1,5 +1,6 @@
 """A search algorithm of the user's own, by asking and telling it; it is rebuilt from what is stored."""
 
+import shutil
 import sqlite3
 
 import numpy as np
@@ -53,9 +54,14 @@ def whole(tmp_path_factory):
     return pm.run(STUDY, tmp_path_factory.mktemp("own") / "own.db", algorithm=Climber)
 
 
+@pytest.fixture(scope="module")
+def half_once(tmp_path_factory):
+    return pm.run(STUDY, tmp_path_factory.mktemp("own") / "half.db", algorithm=Climber, evaluations=30).path
+
+
 @pytest.fixture
-def half(tmp_path):
-    return pm.run(STUDY, tmp_path / "half.db", algorithm=Climber, evaluations=30).path
+def half(half_once, tmp_path):
+    return shutil.copy(half_once, tmp_path / "half.db")
 
 
 def test_an_own_algorithm_learns_from_its_scores(whole):

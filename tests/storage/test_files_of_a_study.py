@@ -46,19 +46,27 @@ def test_it_is_noticed_before_anything_more_is_acknowledged(tmp_path, name, harm
         assert (tmp_path / "s.db-lock").read_bytes() == safe
 
 
-@pytest.fixture
-def killed(tmp_path):
+@pytest.fixture(scope="module")
+def killed_once(tmp_path_factory):
     """A study killed at work: database, log with acknowledged trials, lock."""
-    toml = tmp_path / "s.toml"
+    folder = tmp_path_factory.mktemp("killed")
+    toml = folder / "s.toml"
     toml.write_text('name = "s"\nevaluations = 100000\naudit = false\n[algorithm]\nname = "random"\npopulation = 20\n')
     words = [sys.executable, "-m", "pareto_monoped", "run", str(toml), "--workers", "1"]
     process = subprocess.Popen(words, cwd=ROOT, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
-    deadline, db = time.monotonic() + 100.0, tmp_path / "s.db"
+    deadline, db = time.monotonic() + 100.0, folder / "s.db"
     while time.monotonic() < deadline and not (db.exists() and len(read_study(db).trials) >= 40):
         time.sleep(0.05)
     process.send_signal(signal.SIGKILL)
     process.wait()
-    return db
+    return folder
+
+
+@pytest.fixture
+def killed(killed_once, tmp_path):
+    """The database among a copy of its files."""
+    shutil.copytree(killed_once, tmp_path, dirs_exist_ok=True)
+    return tmp_path / "s.db"
 
 
 def test_a_lost_log_is_told(killed):

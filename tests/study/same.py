@@ -12,6 +12,7 @@ def assert_same_study(one, other):
     assert there.front().equals(here.front())
     assert there.checkpoint == here.checkpoint
     assert there.meta.hash == here.meta.hash
+    assert there.content_hash == here.content_hash
     assert there.meta.probe == here.meta.probe
     assert there.history["hypervolume"].equals(here.history["hypervolume"])
     assert read_robustness(one) == read_robustness(other)

@@ -51,7 +51,7 @@ def _verify(db, executor):
 
 def _make_robust(db, executor):
     front = read_study(db).front()["trial"].tolist()
-    robust(db, UNCERTAINTY, trials=front[:2], workers=2, executor=executor)
+    robust(db, UNCERTAINTY, trials=front[:1], workers=2, executor=executor)
 
 
 class Counting(Executor):
@@ -83,7 +83,10 @@ def two_processes():
 
 def test_on_two_processes(on_threads, two_processes, tmp_path):
     crew, told = two_processes
-    whole(tmp_path / "s.db", crew)
+    counting = Counting(crew)
+    whole(tmp_path / "s.db", counting)
+    assert counting.tasks > 6
+    assert counting.functions == {shared.jumps_of, screen._screened_of}
     assert_same_study(on_threads, tmp_path / "s.db")
     assert told == []
 
@@ -98,12 +101,10 @@ def test_the_default_search_on_two_processes(two_processes, tmp_path):
     assert_same_study(tmp_path / "threads.db", tmp_path / "s.db")
 
 
+@pytest.mark.long
 def test_on_an_executor_of_threads(on_threads, tmp_path):
     with ThreadPoolExecutor(2) as pool:
-        counting = Counting(pool)
-        whole(tmp_path / "s.db", counting)
-    assert counting.tasks > 6
-    assert counting.functions == {shared.jumps_of, screen._screened_of}
+        whole(tmp_path / "s.db", pool)
     assert_same_study(on_threads, tmp_path / "s.db")
 
 

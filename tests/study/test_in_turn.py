@@ -60,12 +60,12 @@ def test_robust_keeps_the_workers_busy_over_its_chunks(tmp_path, monkeypatch):
 
 
 def test_robust_objectives_keep_the_workers_busy_over_their_chunks(monkeypatch):
-    monkeypatch.setattr(samples, "_JUMPS", 256)
+    monkeypatch.setattr(samples, "_JUMPS", 64)
     designs = np.array([PAPER_CASES[name].design.as_array() for name in ("A", "B", "C")])
     gearboxes, calibration = map_for(PAPER_MOTOR), load_calibration()
     names, sampling = (
         ("height_m.p05", "failed_share", "overloaded_share"),
-        Sampling(ranges=load_uncertainty(), samples=256, seed=1),
+        Sampling(ranges=load_uncertainty(), samples=64, seed=1),
     )
     with Together() as pool:
         shared = SharedEvaluator(gearboxes, calibration, executor=pool)

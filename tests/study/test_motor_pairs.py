@@ -3,6 +3,7 @@
 import json
 import sqlite3
 from itertools import product
+from types import SimpleNamespace
 
 import numpy as np
 import optuna
@@ -144,12 +145,28 @@ def test_the_surrogate_sees_each_joint_s_own_actuator(where):
     assert len(masses) == 1
 
 
+@pytest.fixture
+def interpreted(monkeypatch):
+    """AGE-MOEA2's loops, which pymoo compiles for five seconds in every process, run as the Python that they are."""
+    from pymoo.algorithms.moo import age, age2
+
+    types = SimpleNamespace(float64=np.float64, intp=np.intp, boolean=np.bool_)
+    for module in (age, age2):
+        monkeypatch.setattr(module, "numba", types)
+        for place in (module, *(each for each in vars(module).values() if isinstance(each, type))):
+            for name, function in list(vars(place).items()):
+                inner = getattr(function, "__func__", function)
+                if hasattr(inner, "py_func"):
+                    plain = inner.py_func if inner is function else staticmethod(inner.py_func)
+                    monkeypatch.setattr(place, name, plain)
+
+
 def search(study, generations=6, algorithm=None):
     return search_among_motors(study, coordinates_for(study), (1.0, 2.0), generations, algorithm)
 
 
 @pytest.mark.parametrize("name", ALGORITHMS)
-def test_every_algorithm_asks_for_new_points_and_finds_the_best_pair(name):
+def test_every_algorithm_asks_for_new_points_and_finds_the_best_pair(interpreted, name):
     study = pairs(algorithm={"name": name, "population": 20})
     _, history = search(study)
     values, space = np.vstack([asked for asked, _ in history]), COORDINATES.space
@@ -163,7 +180,7 @@ def test_every_algorithm_asks_for_new_points_and_finds_the_best_pair(name):
 
 
 @pytest.mark.parametrize("name", ALGORITHMS)
-def test_restored_from_state_and_history_it_continues_alike(name):
+def test_restored_from_state_and_history_it_continues_alike(interpreted, name):
     study = pairs(algorithm={"name": name, "population": 10})
     first, history = search(study, 5)
     again = make_algorithm(study, coordinates_for(study))
@@ -177,7 +194,7 @@ def test_restored_from_state_and_history_it_continues_alike(name):
 @pytest.fixture(scope="module")
 def db(tmp_path_factory):
     path = tmp_path_factory.mktemp("pairs") / "s.db"
-    run(pairs(evaluations=120, algorithm={"name": "nsga2", "population": 20}), path)
+    run(pairs(evaluations=120, audit=False, algorithm={"name": "nsga2", "population": 20}), path)
     return path
 
 
@@ -238,13 +255,13 @@ def test_a_database_with_an_unknown_motor_is_damaged(db, tmp_path):
 def test_other_lists_are_refused_on_resume(db):
     """With the same motors at other joints, too."""
     for hip, knee in ((KNEE, HIP), (HIP[::-1], KNEE), (HIP, KNEE[:2])):
-        study = pairs(hip, knee, evaluations=120, algorithm={"name": "nsga2", "population": 20})
+        study = pairs(hip, knee, evaluations=120, audit=False, algorithm={"name": "nsga2", "population": 20})
         with pytest.raises(StudyError, match=r"motor"):
             run(study, db)
 
 
 def test_stopped_within_a_generation_and_resumed_it_is_as_in_one_go(db, tmp_path):
-    study = pairs(evaluations=120, algorithm={"name": "nsga2", "population": 20})
+    study = pairs(evaluations=120, audit=False, algorithm={"name": "nsga2", "population": 20})
     path = tmp_path / "cut.db"
     run(study, path, evaluations=47)
     assert len(read_study(path).trials) == 47

@@ -1,5 +1,6 @@
 """Own objectives and constraints of a stored study: values are stored, functions never."""
 
+import shutil
 import sqlite3
 
 import numpy as np
@@ -39,10 +40,15 @@ def stored(tmp_path_factory):
     return pm.run(pm.Study.define(**STUDY), tmp_path_factory.mktemp("own") / "own.db", **GOALS)
 
 
+@pytest.fixture(scope="module")
+def half_once(tmp_path_factory):
+    return pm.run(pm.Study.define(**STUDY), tmp_path_factory.mktemp("half") / "half.db", evaluations=30, **GOALS).path
+
+
 @pytest.fixture
-def half(tmp_path):
+def half(half_once, tmp_path):
     """A study that has 30 of its 60 trials: one and a half generations."""
-    return pm.run(pm.Study.define(**STUDY), tmp_path / "half.db", evaluations=30, **GOALS).path
+    return shutil.copy(half_once, tmp_path / "half.db")
 
 
 def test_every_trial_stores_what_the_functions_make_of_it(stored):

@@ -1,10 +1,12 @@
 """The run loop with the real evaluator, on small budgets."""
 
 import os
+import resource
 import signal
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +14,7 @@ import numpy as np
 import optuna
 import pytest
 
+from pareto_monoped.cli import _run as cli
 from pareto_monoped.definition.goals import constraints_of
 from pareto_monoped.definition.study import study_from_dict
 from pareto_monoped.definition.study_file import Stop
@@ -339,46 +342,42 @@ def test_a_bent_checkpoint_is_refused(whole, tmp_path, bent):
     assert read_study(path).trials.equals(whole[2].trials)
 
 
-def test_a_disk_that_is_full_when_a_study_is_made_leaves_nothing(tmp_path):
-    import resource
+@contextmanager
+def full(size):
+    """No file gets longer than so many bytes, by the system's own limit."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
+
+def test_a_disk_that_is_full_when_a_study_is_made_leaves_nothing(tmp_path, capsys):
     toml = tmp_path / "s.toml"
     toml.write_text('name = "s"\nevaluations = 20\n')
-    done = subprocess.run(
-        [sys.executable, "-m", "pareto_monoped", "run", str(toml)],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000)),
-    )
-    assert done.returncode == 1, done.stderr
-    assert done.stderr.splitlines()[-1].startswith("error: study database")
-    assert "disk" in done.stderr
-    assert "run the study again" in done.stderr  # there is nothing to resume
-    assert "resume" not in done.stderr
+    with full(100_000):
+        assert cli(["run", str(toml)]) == 1
+    last = capsys.readouterr().err.splitlines()[-1]
+    assert last.startswith("error: study database")
+    assert "disk" in last
+    assert "run the study again" in last  # there is nothing to resume
+    assert "resume" not in last
     assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
 
 
-def test_a_disk_that_fills_up_loses_nothing(tmp_path):
-    """The system's own limit on a file's size, in a real process; gone on with after the limit is lifted."""
-    import resource
-
+def test_a_disk_that_fills_up_loses_nothing(tmp_path, capsys):
     toml = tmp_path / "s.toml"
-    toml.write_text('name = "s"\nevaluations = 2000\naudit = false\n[algorithm]\nname = "random"\npopulation = 100\n')
-    done = subprocess.run(
-        [sys.executable, "-m", "pareto_monoped", "run", str(toml)],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1_000_000, 1_000_000)),
-    )
-    assert done.returncode == 1
-    assert done.stderr.splitlines()[-1].startswith("error: study database")
-    assert "all acknowledged trials are safe" in done.stderr
-    assert "Traceback" not in done.stderr
+    toml.write_text('name = "s"\nevaluations = 2000\naudit = false\n[algorithm]\nname = "random"\npopulation = 50\n')
+    with full(600_000):
+        assert cli(["run", str(toml)]) == 1
+    told = capsys.readouterr().err
+    assert told.splitlines()[-1].startswith("error: study database")
+    assert "all acknowledged trials are safe" in told
+    assert "Traceback" not in told
     data = read_study(tmp_path / "s.db")
     stored = len(data.trials)
     assert 0 < stored < 2000
-    assert resume(tmp_path / "s.db", evaluations=stored + 100).new_evaluations == 100
-    again = load_simulator(data.study, workers=2).evaluator(data.trials[list(NAMES)].to_numpy()[:100])
-    assert np.array_equal(again.height_m, data.trials["height_m"][:100], equal_nan=True)
+    assert resume(tmp_path / "s.db", evaluations=stored + 50).new_evaluations == 50
+    again = load_simulator(data.study, workers=2).evaluator(data.trials[list(NAMES)].to_numpy()[:50])
+    assert np.array_equal(again.height_m, data.trials["height_m"][:50], equal_nan=True)

@@ -33,7 +33,9 @@ knee_ratio = {lower = 6.0, upper = 8.4}
 stiffness_n_per_m = {lower = 5.0, upper = 200.0}
 knee_release_rad = {lower = 0.0, upper = 0.3}
 """
-ALGORITHMS = ("surrogate", "nsga2", "sms_emoa", "optuna_nsga2", "weighted_cmaes", "random")
+OTHERS = ("nsga2", "sms_emoa", "optuna_nsga2", "random")
+ALGORITHMS = ("surrogate", "weighted_cmaes", *(pytest.param(name, marks=pytest.mark.long) for name in OTHERS))
+"""Which search asks makes no difference to the strength of what it asks for."""
 
 
 def written(tmp_path, strength="true", more=""):
