@@ -67,3 +67,31 @@ def test_a_running_chain_has_the_angular_momentum_of_its_links(leg, length):
         turned = part.mass_properties().inertia_kg_m2[2, 2] if part.group is Group.KNEE_DRIVE else 0.0
         energy += 0.5 * (part.mass_kg() * speeds.get(part.role, 0.0) ** 2 + turned)
     assert reflected == pytest.approx(2.0 * energy, rel=1e-9)
+
+
+@pytest.mark.parametrize("ratio", [4.0, 6.0, 8.0])
+def test_an_actuator_has_the_angular_momentum_of_what_turns_in_it(actuator_map, ratio):
+    """At 1 rad/s of its carrier, from the speeds of rolling pitch circles; the planets' spin is against all others."""
+    actuator = actuator_map.lookup(ratio)
+    gears, motor = actuator.gears, actuator.motor
+    # Shifted profiles make a planet's circle at the sun another than that at the ring.
+    centre = next(1e-3 * part.pitch_radius_mm for part in actuator.parts if part.group is Group.PLANET)
+    at_ring = centre * gears.planet_teeth / (gears.ring_teeth - gears.planet_teeth)
+    at_sun, sun = (centre * z / (gears.sun_teeth + gears.planet_teeth) for z in (gears.planet_teeth, gears.sun_teeth))
+    spin = -centre / at_ring  # its point at the ring stands still
+    fast = (centre - spin * at_sun) / sun
+    about = {part.name: float(part.mass_properties().inertia_kg_m2[2, 2]) for part in actuator.parts}
+    # The motor's rotor counts with the data sheet's figure, and what its envelope has less is the excess.
+    drawn = sum(about[part.name] for part in actuator.parts if part.group is Group.ROTOR)
+    rotor = drawn + tables.rotor_excess_kg_m2(actuator)
+    assert tables.rotor_inertia_kg_m2(actuator) == pytest.approx(rotor, rel=1e-12)
+    envelope = sum(about[part.name] for part in actuator.parts if part.role is Role.MOTOR_ROTOR)
+    assert rotor == pytest.approx(drawn - envelope + motor.rotor_inertia_kg_m2, rel=1e-12)
+    momentum = rotor * fast
+    for part in actuator.parts:
+        if part.group is Group.PLANET:
+            orbit = part.mass_kg() * centre**2
+            momentum += orbit + (about[part.name] - orbit) * spin
+        elif part.group not in (Group.ROTOR, Group.HOUSING):
+            momentum += about[part.name]
+    assert tables.actuator_coupling_kg_m2(actuator) == pytest.approx(momentum, rel=1e-9)
