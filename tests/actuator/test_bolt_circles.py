@@ -10,6 +10,7 @@ from pareto_monoped.actuator.motor import FramedMotor, HolePattern
 from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.search import build_map, map_for
 from pareto_monoped.geometry.roles import Role
+from pareto_monoped.geometry.shapes import Pattern
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.journal import SHOULDER_RADIUS, journal_parts
 
@@ -38,6 +39,35 @@ def test_the_coupling_s_screws_hold_in_the_motor_s_face(name):
     motor = load_motor(name)
     depth, face = thread_mm(esspg(map_for(name)))
     assert 0.6 * motor.output_holes.diameter_mm <= depth <= face
+
+
+@pytest.mark.parametrize("name", motor_names())
+def test_screws_stand_in_the_tapped_holes_of_a_framed_motor(name):
+    """As wide as their cores, on their circle; the shank ends at the motor's face."""
+    actuator = esspg(map_for(name))
+    motor, parts = load_motor(name), {part.name: part for part in actuator.parts}
+    for screw, owner, through, circle in (
+        ("stator_screw", "motor_stator", "backplate", motor.mount_holes),
+        ("coupling_screw", "motor_rotor", "coupling", motor.output_holes),
+    ):
+        *_, shank, thread = parts[screw].prisms
+        # Dowels stand between the screws, in holes of the same size.
+        holes = [(p, h) for p in parts[owner].prisms for h in p.holes if isinstance(h, Pattern)]
+        ((base, hole),) = [(p, h) for p, h in holes if h.phase_rad == parts[screw].phase_rad]
+        assert hole.radius_mm == pytest.approx(thread.outline.radius_mm)
+        assert (2.0 * hole.pitch_radius_mm, hole.count) == (circle.pitch_circle_mm, circle.count)
+        assert (2.0 * parts[screw].pitch_radius_mm, parts[screw].count) == (circle.pitch_circle_mm, circle.count)
+        assert 2.0 * shank.outline.radius_mm == circle.diameter_mm
+        assert 0.5 <= circle.diameter_mm - 2.0 * hole.radius_mm <= 0.8  # tapping drills of M3 and M4 (ISO 2306)
+        heights = [float(z) for p in parts[through].prisms for z in (p.z0_mm, p.z1_mm)]
+        # From the back of the backplate forwards, and from the front of the coupling backwards.
+        ends = (min(heights), base.z0_mm) if through == "backplate" else (base.z1_mm, max(heights))
+        assert (shank.z0_mm, shank.z1_mm) == pytest.approx(ends)
+        assert ends[through == "backplate"] in (pytest.approx(thread.z0_mm), pytest.approx(thread.z1_mm))
+        assert thread.z1_mm - thread.z0_mm <= 5.0
+    (coupling,) = parts["coupling"].prisms
+    clear = [h for h in coupling.holes if isinstance(h, Pattern) and h.radius_mm > 0.5 * motor.output_holes.diameter_mm]
+    assert any(2.0 * h.radius_mm == pytest.approx(motor.output_holes.diameter_mm + 0.2) for h in clear)
 
 
 @pytest.mark.parametrize("name", motor_names())

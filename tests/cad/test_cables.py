@@ -147,4 +147,12 @@ def test_the_files_have_every_corner_and_every_length(product):
     motors = [made["hip_motor"], made["knee_motor"]]
     assert int(wires["count"]) == sum(cable.wires for cable in motors)
     assert all(f"{cable.name} 3 x {cable.cut_mm:g} mm" in wires["remark"] for cable in motors)
+    # As many metres as all pieces of the list have together: each of a motor's three wires is cut to the same length.
+    for row in bought:
+        pieces = re.findall(r"(\d+) x ([\d.]+) mm", row["remark"])
+        metres = re.findall(r"; ([\d.]+) m$", row["remark"])
+        assert len(metres) == bool(pieces)
+        assert sum(int(count) * float(long) for count, long in pieces) == pytest.approx(
+            1e3 * sum(map(float, metres)), abs=5.0
+        )
     assert next(int(row["count"]) for row in bought if row["designation"].startswith("cable tie")) == len(made)

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from pareto_monoped.actuator.motors import load_motor
-from pareto_monoped.actuator.ratiomap import joint_maps
+from pareto_monoped.actuator.ratiomap import JointMaps, joint_maps
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad import batch
 from pareto_monoped.cad.jobs import case_job, front_jobs, trial_job
@@ -32,6 +32,8 @@ def data():
         calibration=load_calibration("ideal"),
         study=SimpleNamespace(strength=False, name="mine", rules="iso6336"),
         meta=SimpleNamespace(created="2025-03-04T05:06:07+00:00"),
+        content_hash="12ab",
+        sealed=True,
     )
 
 
@@ -39,9 +41,22 @@ def test_a_trial_is_exported_with_its_design_and_the_study_s_motor_and_calibrati
     job = trial_job(data, 4, folder=tmp_path, formats=["stl", "step"], force=True, hip_rad=0.1, knee_rad=0.2)
     assert job.design.as_array() == pytest.approx(data.trials.loc[4, list(NAMES)].to_numpy(float), abs=0.0)
     assert (job.motor, job.calibration, job.rules) == (data.motor, data.calibration, "iso6336")
-    assert job.source == {"study": "mine", "trial": 4, "date": "2025-03-04"}
+    expected = {"study": "mine", "trial": 4, "date": "2025-03-04", "content_hash": "12ab", "sealed": True}
+    assert job.source == expected
     assert (job.folder, job.formats, job.force) == (tmp_path, ("step", "stl"), True)
     assert (job.hip_rad, job.knee_rad) == (0.1, 0.2)
+
+
+def test_each_joint_has_its_own_motor_and_shared_ones_are_named_once(data, tmp_path):
+    assert trial_job(data, 4, folder=tmp_path).knee_motor is None
+    assert case_job("B", folder=tmp_path).knee_motor is None
+    data.kit_of_trial = lambda trial: JointMaps(hip=map_for("U8"), knee=map_for("MN8014"))
+    for job in (
+        trial_job(data, 4, folder=tmp_path),
+        case_job("B", motor="U8", knee_motor="MN8014", folder=tmp_path),
+    ):
+        assert (job.motor.name, job.knee_motor.name) == ("U8", "MN8014")
+        assert [job.maps().of(joint).motor.name for joint in ("hip", "knee")] == ["U8", "MN8014"]
 
 
 def test_a_front_is_exported_in_its_order_each_n_th_from_the_first(data, tmp_path):

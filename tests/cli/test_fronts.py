@@ -251,6 +251,27 @@ def test_other_objectives_take_other_designs_of_the_stored_trials(db, capsys):
     assert [list(row) for row in rows] == [["trial", *names, *PAPER_NAMES, *ANCHORS]] * len(rows)
 
 
+def test_designs_without_an_audit_are_counted_under_other_objectives_only(db, capsys):
+    assert cli(["front", db, "--objectives", "height_m,energy_j", "--json"]) == 0
+    said = capsys.readouterr()
+    assert [row["trial"] for row in json.loads(said.out)] == [4, 0, 3]
+    assert "without an audit" not in said.err
+    assert cli(["front", db, "--objectives", "height_m,electrical_energy_j", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    with Store(Path(db), read_study(Path(db)).study) as store:
+        store.set_audits([(rows[0]["trial"], True, {})])
+    assert cli(["front", db, "--objectives", "height_m,electrical_energy_j", "--json"]) == 0
+    assert f"note: designs without an audit: {len(rows) - 1} of {len(rows)}\n" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("designs", "told"), [(100, False), (101, True)])
+def test_more_than_a_hundred_rows_are_told_how_to_be_fewer(tmp_path, capsys, designs, told):
+    assert cli(["front", long_front(tmp_path / "long.db", designs)]) == 0
+    said = capsys.readouterr()
+    assert len(said.out.splitlines()) == designs + 1
+    assert ("--most 40 shows 40 of them" in said.err) is told
+
+
 def test_three_objectives_fit_into_the_window(db, capsys):
     assert cli(["front", db, "--objectives", "height_m,electrical_energy_j,mass_kg"]) == 0
     heading, *lines = capsys.readouterr().out.splitlines()

@@ -194,6 +194,13 @@ def test_unknown_names_are_refused_when_a_study_is_defined(changes, words):
         Study.define(name="mine", evaluations=10, **changes)
 
 
+def test_each_motor_of_the_hip_is_paired_with_each_of_the_knee():
+    study = made(hip_motor=["U8", "U12"], knee_motor=["VT8020", "U8"])
+    assert study.kits == (("U8", "VT8020"), ("U8", "U8"), ("U12", "VT8020"), ("U12", "U8"))
+    assert made(hip_motor="U8", knee_motor="U12").kits == (("U8", "U12"),)
+    assert made(motor=["U8", "U12"]).kits == (("U8", "U8"), ("U12", "U12"))
+
+
 def test_files_and_names_of_a_program_are_found_only_when_a_study_runs():
     study = Study.define(name="mine", evaluations=10, motor="not_yet.toml", calibration="own:mine")
     assert (study.motor, study.calibration) == ("not_yet.toml", "own:mine")

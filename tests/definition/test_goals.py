@@ -3,10 +3,11 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from pareto_monoped.definition import provenance
-from pareto_monoped.definition.goals import constraints_of, objectives_of
+from pareto_monoped.definition.goals import Limit, constraints_of, objectives_of
 from pareto_monoped.definition.study import load_study, study_from_dict
 from pareto_monoped.errors import StudyError
 from pareto_monoped.measures import MEASURES, measure
@@ -163,3 +164,20 @@ def test_an_unknown_objective_without_a_near_match_does_not_list_all_measures(na
     assert [measure(one).direction is None for one in few.split(", ")] == [False] * 3
     assert place.startswith("docs/reference/measures.md")
     assert (Path(__file__).parents[2] / "docs/reference/measures.md").exists()
+
+
+@pytest.mark.parametrize(
+    ("side", "limit", "expected"),
+    [
+        ("max", 4.0, [-0.5, 0.0, 0.5]),
+        ("min", 4.0, [0.5, 0.0, -0.5]),
+        # Own measures may be negative: beyond a limit of -4 is -2 where -4 is the most, and -6 where it is the least.
+        ("max", -4.0, [-0.5, 0.0, 0.5]),
+        ("min", -4.0, [0.5, 0.0, -0.5]),
+        ("max", 0.0, [-2.0, 0.0, 2.0]),
+        ("min", 0.0, [2.0, 0.0, -2.0]),
+    ],
+)
+def test_how_far_a_value_is_beyond_a_limit(side, limit, expected):
+    values = np.array([limit - 2.0, limit, limit + 2.0])
+    assert Limit(measure="own.x", side=side, value=limit).shares(values).tolist() == expected

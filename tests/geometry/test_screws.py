@@ -18,7 +18,12 @@ def made(screw=M3, **changes):
 
 
 @pytest.mark.parametrize(
-    ("grip", "room", "length"), [(2.0, 4.5, 6.0), (2.0, 4.0, 6.0), (2.0, 3.9, 5.0), (11.5, 4.5, 16.0), (6.0, 4.5, 10.0)]
+    ("grip", "room", "length"),
+    # The last ones are the shortest and the longest of the catalogue.
+    [
+        *((2.0, 4.5, 6.0), (2.0, 4.0, 6.0), (2.0, 3.9, 5.0), (11.5, 4.5, 16.0), (6.0, 4.5, 10.0)),
+        *((2.0, 1.0, 3.0), (50.0, 10.0, 60.0)),
+    ],
 )
 def test_length_is_the_longest_of_the_catalogue_with_room_for_its_thread(grip, room, length):
     assert screw_length_mm(grip, room) == length
@@ -76,12 +81,15 @@ def test_countersunk_screws_are_flush_and_say_so():
 def test_a_plate_thinner_than_a_countersunk_head_is_refused():
     with pytest.raises(DesignError, match=r"a_screw: grip of 1\.5 mm must be 1\.86 mm or more"):
         made(head="countersunk", grip_mm=1.5)
+    just = made(head="countersunk", grip_mm=M3.countersunk - M3.shank)
+    assert just.prisms[0].z1_mm == pytest.approx(1.86)
 
 
 def test_notes_name_size_standard_and_grade():
     assert made(note="into x").note == "M3 x 6 cap screw (ISO 4762) 8.8, into x"
     assert made(head="countersunk").note == "M3 x 6 countersunk (ISO 14581) 8.8"
     assert made(head="countersunk", room_mm=6.0, grade="10.9").note == "M3 x 8 countersunk (ISO 10642) 10.9"
+    assert made(M25, head="countersunk", room_mm=6.0).note == "M2.5 x 8 countersunk (ISO 14581) 8.8"
     assert made(head="hexagon").note == "M3 x 6 hexagon screw (ISO 4017) 8.8"
 
 

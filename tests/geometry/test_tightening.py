@@ -68,3 +68,19 @@ def test_a_screw_without_a_size_is_refused():
     message = "screw of 12 mm: must be M2 to M8; choose another diameter"
     with pytest.raises(DesignError, match="^" + re.escape(message)):
         thread_size(12.0)
+
+
+@pytest.mark.parametrize("screw", [M3, M4, M5])
+def test_a_countersunk_head_rubs_on_its_cone(screw):
+    """An even pressure on a cone of 90 degrees, summed up over its rings: it carries the preload along the axis."""
+    found = screw.fastening("countersunk", "10.9")
+    thread = found.thread
+    edges = np.linspace(0.5 * found.hole_mm, 0.5 * found.bearing_mm, 1001)
+    radius = 0.5 * (edges[1:] + edges[:-1])
+    slanted = np.hypot(np.diff(edges), np.diff(edges))  # as deep as it is wide
+    area = 2.0 * np.pi * radius * slanted
+    pressure = found.preload_n / np.sum(area * np.diff(edges) / slanted)
+    head = 1e-3 * np.sum(FRICTION * pressure * area * radius)
+    slope = np.arctan(thread.pitch_mm / (np.pi * thread.flank_diameter_mm))
+    turned = np.tan(slope + np.arctan(FRICTION / np.cos(np.pi / 6.0))) * 0.5e-3 * thread.flank_diameter_mm
+    assert found.torque_n_m == pytest.approx(found.preload_n * turned + head, rel=0.03)

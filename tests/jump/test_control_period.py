@@ -102,6 +102,13 @@ def test_periods_that_do_not_fit_are_refused(changes, complaint):
         calibration_of(values, source="test")
 
 
+@pytest.mark.parametrize("periods", [0, 8])
+def test_a_delay_is_at_most_of_eight_periods(periods):
+    values = asdict(REFERENCE)
+    values["simulation"] |= {"delay_s": periods * REFERENCE.simulation.period_s}
+    assert calibration_of(values, source="test").simulation.delay_s == values["simulation"]["delay_s"]
+
+
 def test_reading_a_calibration_imports_no_numba():
     """It knows how many commands the controller's record keeps, which thus stands apart from the compiled code."""
     code = "import sys; import pareto_monoped.jump.calibration; print('numba' in sys.modules)"

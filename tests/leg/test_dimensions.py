@@ -93,3 +93,13 @@ def test_a_map_without_actuators_has_no_leg():
     message = "actuators of VT8020 = 0: a leg needs at least one to be drilled for; choose another motor"
     with pytest.raises(DesignError, match="^" + re.escape(message)):
         leg_dimensions(dataclasses.replace(found, entries=none))
+
+
+@pytest.mark.parametrize("motor", motor_names())
+def test_a_stronger_actuator_has_wider_sides_of_the_thigh_and_a_weaker_one_none_narrower(motor):
+    leg = leg_dimensions(map_for(motor))
+    side_mm = leg.thigh_half_width_mm - leg.thigh_window_half_width_mm
+    assert side_mm >= 9.0 - 1e-9
+    # No more than 5 N m per mm; exactly that where 9 mm are too few.
+    assert leg.hip.torque_n_m / side_mm <= 5.0 + 1e-9
+    assert side_mm == pytest.approx(9.0) or leg.hip.torque_n_m / side_mm == pytest.approx(5.0)

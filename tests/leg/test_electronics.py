@@ -1,16 +1,20 @@
 """The motor drivers on the base: the choice of the board, and its place."""
 
 import dataclasses
+from itertools import combinations
 
 import numpy as np
 import pytest
+import shapely
 
 from pareto_monoped.actuator.motors import load_motor
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.geometry.roles import Role
+from pareto_monoped.geometry.screws import M4
 from pareto_monoped.leg.actuator_fit import MOTOR_DRIVERS, motor_driver_for, peak_current_a
 from pareto_monoped.leg.base import base_parts
 from pareto_monoped.leg.dimensions import leg_dimensions
+from tests.leg.polygons import polygon
 
 MOTEUS, ODRIVE = MOTOR_DRIVERS
 
@@ -92,3 +96,37 @@ def test_each_joint_s_board_stands_outside_its_cheek(leg, driver):
         heights = [z for prism in part.prisms for z in (prism.z0_mm, prism.z1_mm)]
         assert max(heights) - min(heights) == pytest.approx(driver.height_mm)
         assert part.mass_kg() == driver.mass_kg
+
+
+@pytest.mark.parametrize("driver", MOTOR_DRIVERS, ids=lambda driver: driver.name)
+def test_a_driver_s_plate_has_as_much_metal_around_its_holes_on_all_sides(leg, driver):
+    """5 mm from the outermost screws' axes, of board and rods, to each edge; no hole breaks into another."""
+    plate = next(p for p in base_parts(0.09, with_driver(leg, driver)) if p.name == "hip_driver_plate").prisms[0]
+    window, *round_holes = plate.holes
+    board = 0.5 * driver.hole_width_mm
+    screws = np.array([(c.x_mm, c.y_mm) for c in round_holes if c.radius_mm in (driver.screw.hole, M4.hole)])
+    assert {*np.abs(screws[:, 0]).tolist()} == {board, leg.upper_rod_mm[0]}
+    edges = [*(screws.min(axis=0) - 5.0), *(screws.max(axis=0) + 5.0)]
+    assert polygon(plate.outline).bounds == pytest.approx(edges)
+    rings = [polygon(window), *(shapely.Point(c.x_mm, c.y_mm).buffer(c.radius_mm) for c in round_holes)]
+    # Between the two holes of a cable tie, 6 mm apart, stands 2.5 mm.
+    assert min(one.distance(other) for one, other in combinations(rings, 2)) >= 2.4
+    assert min(polygon(plate.outline).boundary.distance(ring) for ring in rings) >= 2.8
+
+
+@pytest.mark.parametrize("driver", MOTOR_DRIVERS, ids=lambda driver: driver.name)
+def test_what_stands_on_a_board_leaves_room_for_the_heads_of_its_screws(leg, driver):
+    parts = {part.name: part for part in base_parts(0.09, with_driver(leg, driver))}
+    board, block = (polygon(prism.outline).bounds for prism in parts["hip_driver"].prisms)
+    rows = sorted({y for _, y, _ in parts["hip_driver_screw"].places_mm})
+    assert rows[1] - rows[0] == driver.hole_length_mm
+    assert board[1] + board[3] == block[1] + block[3] == pytest.approx(sum(rows))
+    assert rows[0] + driver.screw.head < block[1] < block[3] < rows[1] - driver.screw.head
+
+
+def test_a_board_carries_just_what_its_data_sheet_says():
+    motor = load_motor("U8")
+    just = dataclasses.replace(MOTEUS, voltage_v=motor.rated_voltage_v, peak_current_a=peak_current_a(motor))
+    assert just.carries(motor)
+    assert not dataclasses.replace(just, voltage_v=0.999 * just.voltage_v).carries(motor)
+    assert not dataclasses.replace(just, peak_current_a=0.999 * just.peak_current_a).carries(motor)

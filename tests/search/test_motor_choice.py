@@ -139,6 +139,18 @@ def test_changing_the_motor_keeps_the_place_in_the_list():
         assert ratios.tolist() == [gears[-1 if share else 0].ratio for gears in lists]
 
 
+def test_limits_of_a_variable_hold_every_design_of_every_motor():
+    space = COORDINATES.space
+    values = np.tile(space.lower, (2 * len(ALL), 1))
+    values[:, -1] = np.tile(np.arange(len(ALL)), 2)
+    for name in space.names[:-1]:
+        ends = values.copy()
+        ends[len(ALL) :, space.names.index(name)] = space.upper[space.names.index(name)]
+        found = COORDINATES.designs(ends)[:, NAMES.index(name)]
+        assert COORDINATES.limits(name) == (found.min(), found.max())
+    assert len({gears[-1].ratio for gears in (m.gears["hip_ratio"] for m in space.choices[0].motors)}) > 1
+
+
 def test_a_fixed_ratio_is_each_motor_s_own_real_one():
     coordinates = coordinates_for(several(variables={"knee_ratio": 5.17}))
     values = coordinates.space.snap(np.tile(coordinates.space.lower, (3, 1)))

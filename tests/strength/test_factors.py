@@ -92,3 +92,24 @@ def test_rows_can_be_told_apart_and_say_what_they_are_about():
         assert all((joint.formula, joint.source, joint.required_source, joint.cure))
         # A stored study must know every load, but for the lengths, which are variables.
         assert set(joint.loads) <= measures | {"thigh_length_m", "shank_length_m"}
+
+
+def test_required_factors_are_those_of_their_sources():
+    """5: DIN 8150; 2: bonds; 1.5: what shares a load or is hard, columns; 1: standards with their own safety in them.
+
+    All others are against yield, or slip after VDI 2230-1, R12: 1.2.
+    """
+    both = lambda *names: {f"{side}_{name}" for side in ("hip", "knee") for name in names}  # noqa: E731
+    other = {
+        5.0: {"chain_breaking"},
+        2.0: both("ring_bond"),
+        1.5: both("spline", "sun_shaft", "planet_pin_bending", "planet_pin_seat")
+        | both("coupling_dowels", "ring_housing_dowels", "output_dowels", "mount_dowels")
+        | {"knee_axle_dowels", "knee_drive_shaft", "turnbuckle_stud", "turnbuckle_thread", "turnbuckle_bar"}
+        | {"thigh_side_inner", "thigh_side_outer", "shank_fork_side"},
+        1.0: both("gear_flank", "gear_root", "gear_strikes", "bumper", "actuator_threads")
+        | {"leg_threads", "knee_journal_threads", "actuator_screws_tightened", "dowels_pressed", "knee_drive_opening"}
+        | {"chain_wear", "knee_bearing_static", "knee_bearing_life"},
+    }
+    expected = {joint.name: 1.2 for joint in TABLE} | {name: value for value, names in other.items() for name in names}
+    assert {joint.name: joint.required for joint in TABLE} == expected

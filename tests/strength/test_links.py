@@ -123,3 +123,12 @@ def test_without_a_force_across_a_side_is_a_beam():
     stress = side_stress_mpa(10.0, 500.0, 0.0, 80.0, (20.0, 10.0, 3.0))
     inertia = 3.0 * (40.0**3 - 20.0**3) / 12.0
     assert stress == pytest.approx(10e3 * 20.0 / inertia + 500.0 / 60.0, rel=1e-12)
+
+
+def test_each_thigh_plate_bears_the_gear_torque_of_the_actuator_beside_it():
+    """Of the hip's output, which turns the plate nearest to it, and of the knee's housing, which is bolted on."""
+    plates = {part.name: part.prisms[0] for part in thigh_parts(0.42, D) if part.role is Role.PLATE}
+    middles = {name: 0.5 * (prism.z0_mm + prism.z1_mm) for name, prism in plates.items()}
+    for joint, face_mm in (("hip", D.hip_mount_mm), ("knee", D.knee_mount_mm)):
+        near = min(middles, key=lambda name: abs(middles[name] - face_mm))
+        assert [name for name in ROWS[near].loads if "gear_torque" in name] == [f"peak_gear_torque_{joint}_n_m"]

@@ -103,6 +103,10 @@ def test_a_study_that_is_done_is_left_untouched(whole):
     assert (again.new_evaluations, again.stop_reason, again.evaluations) == (0, "budget", 60)
     assert (again.hypervolume, again.front_size) == (first.hypervolume, first.front_size)
     assert resume(path).new_evaluations == 0
+    # As many as there are is neither fewer nor more.
+    assert run(made(), path, evaluations=60).new_evaluations == resume(path, evaluations=60).new_evaluations == 0
+    with pytest.raises(StudyError, match="60 -> 59 "):
+        run(made(), path, evaluations=59)
     assert (path.read_bytes(), path.stat().st_mtime_ns) == before
 
 

@@ -26,8 +26,10 @@ def test_every_range_is_filled_evenly():
 
 
 def test_the_coordinates_of_all_ranges_are_independent():
-    correlation = np.corrcoef(sobol_samples(UNCERTAINTY, 256).points.T)
-    assert np.abs(correlation - np.eye(len(correlation))).max() < 0.2
+    samples = sobol_samples(UNCERTAINTY, 256)
+    for columns in (samples.points, np.hstack([samples.values[name] for name, _ in DIMENSIONS])):
+        correlation = np.corrcoef(columns.T)
+        assert np.abs(correlation - np.eye(len(correlation))).max() < 0.2
 
 
 def test_the_seed_decides_and_ranges_do_not_move_the_points():
@@ -62,3 +64,16 @@ def test_a_delay_beyond_what_the_controller_keeps_is_refused():
     late = replace(UNCERTAINTY, delay_s=Range(lower=0.02, upper=0.02, source="x"))
     with pytest.raises(InputError, match=r"delay_s = 0.02: must be at most 8 control periods"):
         variations(sobol_samples(late, 4), 1, CALIBRATION)
+
+
+@pytest.mark.parametrize(("periods", "kept"), [(8, True), (9, False)])
+def test_a_delay_of_as_many_periods_as_the_controller_keeps_is_the_longest(periods, kept):
+    """One more found an empty place among the commands kept, and was no delay at all."""
+    simulation = CALIBRATION.simulation
+    delay_s = periods * simulation.period_s - simulation.delay_s
+    late = sobol_samples(replace(UNCERTAINTY, delay_s=Range(lower=delay_s, upper=delay_s, source="x")), 4)
+    if kept:
+        assert variations(late, 1, CALIBRATION).delays_s == pytest.approx(delay_s)
+    else:
+        with pytest.raises(InputError, match="must be at most 8 control periods"):
+            variations(late, 1, CALIBRATION)

@@ -71,3 +71,21 @@ def test_every_screw_and_bolt_is_looked_at(product):
     names = [i.name for i in product.instances if "screw" in i.name or "bolt" in i.name]
     offsets, joins = screws.check_bolts(product)
     assert offsets.looked_at == joins.looked_at == f"{len(names)} screws and bolts"
+
+
+@pytest.mark.parametrize(("offset_mm", "joined"), [(0.97, True), (1.03, False)])
+def test_a_hole_within_a_millimetre_is_meant_for_the_screw(product, offset_mm, joined):
+    offsets, joins = screws.check_bolts(moved(product, "thigh/knee_mount_screw_1", shifted(x=offset_mm)))
+    assert (offsets.measured == pytest.approx(offset_mm)) is joined
+    assert (not joins.failures) is joined
+
+
+@pytest.mark.parametrize(("depth_mm", "joined"), [(0.08, False), (0.12, True)])
+def test_a_screw_that_hardly_reaches_a_part_does_not_join_it(product, depth_mm, joined):
+    """Drawn out along its axis until so much of its thread is left in the actuator's case."""
+    part = next(i.part for i in product.instances if i.name == "thigh/knee_mount_screw_1")
+    *_, shank, thread = part.prisms
+    inwards = 1.0 if thread.z0_mm > shank.z0_mm else -1.0
+    out = inwards * (depth_mm - (thread.z1_mm - thread.z0_mm))
+    _, joins = screws.check_bolts(moved(product, "thigh/knee_mount_screw_1", shifted(z=out)))
+    assert (not joins.failures) is joined

@@ -1,19 +1,22 @@
 """Every drawing of some very different robots: nothing overlaps, and every dimension is there."""
 
+import re
 from collections import Counter
 
 import numpy as np
 import pytest
+import shapely
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.drawing.bores import bores, number
 from pareto_monoped.cad.drawing.dimension import FRAME_MM
 from pareto_monoped.cad.drawing.paper import TIMES, Paper, overlapping
 from pareto_monoped.cad.drawing.part_sheet import part_sheet, round_part
-from pareto_monoped.cad.drawing.plan import plan_of
+from pareto_monoped.cad.drawing.plan import is_square, plan_of, repeats, rounded_rectangle
+from pareto_monoped.cad.drawing.plan_sheet import plan_tables
 from pareto_monoped.cad.drawing.profile import cylinders, faces, half_section, is_round, teeth_of
 from pareto_monoped.cad.drawing.section import diameter_text
-from pareto_monoped.cad.drawing.sheet import MARGIN_MM, SCALES, TITLE_MM, Title, titled
+from pareto_monoped.cad.drawing.sheet import MARGIN_MM, SCALES, SIZES, TITLE_MM, Title, titled
 from pareto_monoped.cad.shape.outlines import polygon
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.geometry.features import Cone, Hole, ShaftEnd
@@ -231,3 +234,68 @@ def test_a_fitted_pattern_of_holes_has_a_frame_with_its_position(sheets):
             assert values[f"Ø{number(hole.place_mm)}"] >= 1, part.name
         assert len(squares) >= len(placed), part.name
     assert frames >= 2
+
+
+def test_countersinks_are_of_90_degrees(sheets):
+    """ISO 10642 and ISO 7721: the heads of all metric countersunk screws are."""
+    said = [label.text for _, paper, _, _ in sheets for label in paper.labels]
+    angles = [angle for text in said for angle in re.findall(rf"countersink Ø[\d.]+ {TIMES} ([\d.]+)°", text)]
+    assert len(angles) >= 3
+    assert set(angles) == {"90"}
+
+
+@pytest.mark.parametrize(
+    ("scale", "text"), [(10.0, "10:1"), (2.0, "2:1"), (1.0, "1:1"), (0.5, "1:2"), (0.2, "1:5"), (0.1, "1:10")]
+)
+def test_scales_are_written_as_paper_to_part(scale, text):
+    """ISO 5455; they stand in the title block."""
+    paper = Paper()
+    titled(paper, SIZES[0], scale, TITLE)
+    assert text in [label.text for label in paper.labels]
+
+
+def rows_of(table):
+    """What a table says, its rows from the top down, each as the texts with their places from the left."""
+    rows = {}
+    for label in table.labels:
+        rows.setdefault(round(label.y, 3), []).append((label.x, label.text))
+    return [[text for _, text in sorted(row)] for _, row in sorted(rows.items(), reverse=True)]
+
+
+def swept(here, onward, there):
+    """Twice the area between the origin and the piece from one node to the next, as its row in the table says it."""
+    (x0, y0), (x1, y1) = here, there
+    if onward[0] == "line":
+        return x0 * y1 - x1 * y0
+    radius, x, y = float(re.search(r"R([\d.]+)", onward[0])[1]), float(onward[1]), float(onward[2])
+    assert np.hypot(x0 - x, y0 - y) == pytest.approx(radius, abs=0.002)
+    assert np.hypot(x1 - x, y1 - y) == pytest.approx(radius, abs=0.002)
+    turn = np.arctan2(y1 - y, x1 - x) - np.arctan2(y0 - y, x0 - x)
+    turn = -(-turn % (2.0 * np.pi)) if "clockwise" in onward[0] else turn % (2.0 * np.pi)
+    return radius**2 * turn + x * (y1 - y0) - y * (x1 - x0)
+
+
+def test_lines_and_arcs_of_the_table_enclose_the_contour(sheets):
+    """Arcs go on anticlockwise unless the table says clockwise; each piece counts with the sector that it sweeps."""
+    turns = Counter()
+    for part, _, _, _ in sheets:
+        if is_round(part) or part.balls:
+            continue
+        plan = plan_of(part)
+        tables = [rows_of(table) for table in plan_tables(plan, part)[0]]
+        listed = [row for rows in tables if rows[0][0].startswith("Contours, ") for row in rows[2:] if row[0].isdigit()]
+        found = [((float(row[1]), float(row[2])), row[3:]) for row in listed]
+        turns.update("clockwise" if "clockwise" in row[3] else row[3].split()[0] for row in listed)
+        for contour in (contour for layer in plan.layers for contour in (layer.outline, *layer.holes)):
+            outline = any(contour is layer.outline for layer in plan.layers)
+            if contour.circle or (is_square(contour) if outline else rounded_rectangle(contour)):
+                continue
+            times = repeats(contour)
+            mine, found = found[: len(contour.pieces) // times], found[len(contour.pieces) // times :]
+            (x, y), turn = mine[0][0], 2.0 * np.pi / times
+            ends = [here for here, _ in mine[1:]]
+            ends.append((x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn)))
+            area = 0.5 * times * sum(swept(*piece, there) for piece, there in zip(mine, ends, strict=True))
+            assert area == pytest.approx(shapely.Polygon(polygon(contour, 1e-5)).area, rel=1e-3), part.name
+        assert found == [], part.name
+    assert min(turns["clockwise"], turns["arc"], turns["line"]) >= 3

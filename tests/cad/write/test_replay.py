@@ -5,6 +5,7 @@ import runpy
 import subprocess
 import sys
 from dataclasses import replace
+from importlib import resources
 
 import numpy as np
 import pytest
@@ -77,3 +78,17 @@ def test_the_replay_is_short_and_needs_two_packages():
     assert len(text.splitlines()) <= 120
     imported = {line.split()[1].split(".")[0] for line in text.splitlines() if line.startswith(("import ", "from "))}
     assert imported == {"json", "sys", "pathlib", "mujoco", "numpy"}
+
+
+def test_a_motor_that_brakes_has_its_whole_torque_and_one_that_drives_loses_it_with_speed():
+    """No-load speed 30 rad/s, whole torque of 10 N m up to 10 rad/s: half of it is left at 20, either way round."""
+    limited = runpy.run_path(str(resources.files("pareto_monoped") / "data" / "replay.py"))["limited"]
+    jump = {
+        "torque_limit_n_m": [10.0, 10.0],
+        "voltage_limit": True,
+        "no_load_speed_rad_per_s": [30.0, 30.0],
+        "corner_speed_rad_per_s": [10.0, 10.0],
+    }
+    for speed, left in ((5.0, 10.0), (20.0, 5.0), (25.0, 2.5), (40.0, 0.0), (-20.0, 10.0), (-40.0, 10.0)):
+        found = limited(jump, np.array([99.0, -99.0]), np.array([speed, -speed]))
+        assert found.tolist() == [left, -left], speed
