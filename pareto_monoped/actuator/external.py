@@ -9,8 +9,10 @@ from pareto_monoped.actuator.features import (
     coupling_part,
     encoder_parts,
     motor_holes,
+    rotor_part,
     shaft_end,
     slab,
+    stator_part,
     sun_part,
     tube,
 )
@@ -19,7 +21,7 @@ from pareto_monoped.actuator.layout import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, 
 from pareto_monoped.actuator.motor import HolePattern, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.parts import Part
-from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
+from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role
 from pareto_monoped.geometry.screws import Screw, clearance, screw_for, screw_part
 from pareto_monoped.geometry.shapes import Pattern
 
@@ -101,8 +103,7 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
 
 def _dowel_holes(motor: Motor) -> Pattern:
     """Return a dowel hole between every two screws of the turning face, whose friction alone carries too little."""
-    output = _output(motor)
-    return COUPLING_DOWEL.holes(output.pitch_circle_mm, output.count, np.pi / output.count)
+    return COUPLING_DOWEL.between(_rotor_holes(_output(motor), _ROTOR_HOLE_MM))
 
 
 def _coupling_windows(hub_mm: float, output: HolePattern) -> tuple[Pattern, ...]:
@@ -128,8 +129,7 @@ def _motor_screws(shell: ExternalLayout, motor: Motor, settings: ActuatorSetting
             room_mm=shell.base_mm,
             direction=-1.0,
             material=steel,
-            count=output.count,
-            pitch_radius_mm=0.5 * output.pitch_circle_mm,
+            holes=_rotor_holes(output, _ROTOR_HOLE_MM),
             group=Group.ROTOR,
             note="into the motor's turning face, flush",
         ),
@@ -142,8 +142,7 @@ def _motor_screws(shell: ExternalLayout, motor: Motor, settings: ActuatorSetting
             room_mm=_MOTOR_THREAD_MM,
             direction=1.0,
             material=steel,
-            count=base_holes.count,
-            pitch_radius_mm=0.5 * base_holes.pitch_circle_mm,
+            holes=motor_holes(motor, MOTOR_TAPPED_HOLE_MM),
             group=Group.HOUSING,
             role=Role.STATOR_SCREW,
             note="into the motor's base; left out where the journal's screws go there",
@@ -158,23 +157,16 @@ def _motor_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Actu
     assert frame is not None
     z_motor, z_plate, holes = shell.z_motor, shell.z_plate, motor_holes(motor, MOTOR_TAPPED_HOLE_MM)
     return (
-        Part(
-            name="motor_stator",
-            role=Role.MOTOR_STATOR,
-            visibility=Visibility.INSIDE,
+        stator_part(
             material=settings.materials.motor_stator,
             prisms=(
                 *slab(z_plate, z_plate + base, at.r_stator_out, _SHAFT_BORE_MM, holes),
                 *tube(z_plate + base, z_motor - base - clearance, at.r_stator_out, at.r_stator_in),
             ),
-            process="bought",
-            group=Group.HOUSING,
             catalogue_mass_kg=(1.0 - rotor_share) * frame.mass_kg,
             note=f"{motor.name}, framed: stator, base and bearings",
         ),
-        Part(
-            name="motor_rotor",
-            role=Role.MOTOR_ROTOR,
+        rotor_part(
             material=settings.materials.motor_rotor,
             prisms=(
                 *slab(
@@ -187,8 +179,6 @@ def _motor_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Actu
                 *tube(z_plate + base, z_motor - base, at.r_motor, at.r_rotor_in),
                 *shaft_end(z_plate, z_motor - base, _SHAFT_MM),
             ),
-            process="bought",
-            group=Group.ROTOR,
             catalogue_mass_kg=rotor_share * frame.mass_kg,
             note=f"{motor.name}, framed: rotor with its face",
             joint=Joint(kind=JointKind.RUNNING, how="in the motor's own bearings on", partner="motor_stator"),

@@ -3,6 +3,7 @@
 from pareto_monoped.actuator.features import (
     MOTOR_CLEARANCE_HOLE_MM,
     SPIGOT_MM,
+    backplate_screw,
     casing_dowel_holes,
     casing_holes,
     housing_part,
@@ -18,7 +19,7 @@ from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit
-from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.parts import Part, steel_part
 from pareto_monoped.geometry.roles import Group, Role, Visibility
 from pareto_monoped.geometry.screws import M3, tapped
 from pareto_monoped.geometry.shapes import Circle, Pattern
@@ -78,13 +79,12 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
             ),
             note=ring.groove_note,
         ),
-        Part(
+        steel_part(
             name="bore_retaining_ring",
             role=Role.RETAINING_RING,
             visibility=Visibility.INSIDE,
             material=materials.steel,
             prisms=tube(z_groove_back, at.z_bearing_back, ring.r_groove, ring.r_free),
-            process="bought",
             group=Group.HOUSING,
             catalogue_mass_kg=ring.mass_kg,
             note=ring.name and f"{ring.name}, in the ring housing's groove behind the main bearing",
@@ -153,17 +153,8 @@ def _housing_screws(at: Layout, shell: ExternalLayout, settings: ActuatorSetting
             seat_mm=shell.z_flange + casing.flange_mm,
             grip_mm=casing.flange_mm,
             direction=-1.0,
-            pitch_radius_mm=shell.r_bolts,
+            holes=_flange_holes(shell, settings, M3.hole),
             note="from the ring housing into the casing",
         ),
-        housing_screw(
-            "backplate_screw",
-            settings,
-            head="cap",
-            seat_mm=shell.z_end,
-            grip_mm=casing.plate_mm,
-            direction=1.0,
-            pitch_radius_mm=at.r_bolts,
-            note="into the casing",
-        ),
+        backplate_screw(at, shell.z_end, casing.plate_mm, settings),
     )

@@ -20,7 +20,7 @@ from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.features import Hole
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.making import Fit, ToothMaking
-from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.parts import Part, Prism, steel_part, strong_part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
@@ -82,16 +82,14 @@ def coupling_part(
     prisms: tuple[Prism, ...], spline: ExternalGear, screws: Hole, screwed_to: str, settings: ActuatorSettings
 ) -> Part:
     """Build the coupling between motor and sun."""
-    return Part(
+    return strong_part(
         name="coupling",
         role=Role.COUPLING,
         visibility=Visibility.INSIDE,
         material=settings.materials.aluminium,
         prisms=prisms,
-        process="machined",
         group=Group.ROTOR,
         teeth=(spline_teeth(spline, settings),),
-        grade=ALLOYS["aw_7075_t6"],
         fits=(COUPLING_DOWEL.hole_fit,),
         features=(screws,),
         note=f"screwed to the {screwed_to}; bore {hub_note(settings)}",
@@ -162,16 +160,12 @@ def output_holes(settings: ActuatorSettings, radius_mm: float = M3.core) -> Patt
 
 def output_dowel_holes(settings: ActuatorSettings) -> Pattern:
     """Return the holes for dowels in the output flange, in every second gap of its bolts."""
-    data = settings.parts.interface
-    gap = np.pi / data.output_bolt_count
-    return Dowel(diameter_mm=data.output_dowel_mm).holes(data.output_bolt_circle_mm, data.output_bolt_count // 2, gap)
+    return Dowel(diameter_mm=settings.parts.interface.output_dowel_mm).between(output_holes(settings), every=2)
 
 
 def casing_dowel_holes(at: Layout, settings: ActuatorSettings) -> Pattern:
     """Return the holes for dowels in the mounting face, in every gap of its bolts."""
-    data = settings.parts.interface
-    gap = np.pi / data.mount_bolt_count
-    return Dowel(diameter_mm=data.mount_dowel_mm).holes(2.0 * at.r_bolts, data.mount_bolt_count, gap)
+    return Dowel(diameter_mm=settings.parts.interface.mount_dowel_mm).between(casing_holes(at, settings))
 
 
 def casing_holes(at: Layout, settings: ActuatorSettings, radius_mm: float = M3.core) -> Pattern:
@@ -180,10 +174,35 @@ def casing_holes(at: Layout, settings: ActuatorSettings, radius_mm: float = M3.c
 
 
 def housing_screw(name: str, settings: ActuatorSettings, **own: Any) -> Part:
-    """Describe the screws of a joint of the housing, as many as hold the actuator; ``own`` is as for ``screw_part``."""
-    parts, steel = settings.parts, settings.materials.steel
-    count, room_mm = parts.interface.mount_bolt_count, parts.casing.flange_mm
-    return screw_part(name, M3, room_mm=room_mm, material=steel, count=count, group=Group.HOUSING, **own)
+    """Build the screws of a joint of the housing; ``own`` is as for ``screw_part``."""
+    room_mm, steel = settings.parts.casing.flange_mm, settings.materials.steel
+    return screw_part(name, M3, room_mm=room_mm, material=steel, group=Group.HOUSING, **own)
+
+
+def backplate_screw(at: Layout, z_end_mm: Numbers, grip_mm: float, settings: ActuatorSettings) -> Part:
+    """Build the screws of the backplate."""
+    return housing_screw(
+        "backplate_screw",
+        settings,
+        head="cap",
+        seat_mm=z_end_mm,
+        grip_mm=grip_mm,
+        direction=1.0,
+        holes=casing_holes(at, settings),
+        note="into the casing",
+    )
+
+
+# The envelopes of a motor, whose parts are one.
+stator_part = partial(
+    Part,
+    name="motor_stator",
+    role=Role.MOTOR_STATOR,
+    visibility=Visibility.INSIDE,
+    process="bought",
+    group=Group.HOUSING,
+)
+rotor_part = partial(Part, name="motor_rotor", role=Role.MOTOR_ROTOR, process="bought", group=Group.ROTOR)
 
 
 def motor_holes(motor: Motor, play_mm: float) -> Pattern:
@@ -221,13 +240,12 @@ def bought_bearing(
 ) -> Part:
     """Build a ball bearing as the ring it fills, with its catalogue mass."""
     inner, outer = 0.5 * bearing.inner_diameter_mm, 0.5 * bearing.outer_diameter_mm
-    return Part(
+    return steel_part(
         name=name,
         role=Role.BEARING,
         visibility=Visibility.INSIDE,
         material=material,
         prisms=tube(z_front_mm - bearing.width_mm, z_front_mm, outer, inner),
-        process="bought",
         group=group,
         catalogue_mass_kg=bearing.mass_kg,
         note=note_with(

@@ -20,7 +20,7 @@ from pareto_monoped.actuator.webs import SCREW as WEB_SCREW
 from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, ExternalGear
 from pareto_monoped.geometry.making import Fit, limits, raceway_note
-from pareto_monoped.geometry.parts import Part, Prism
+from pareto_monoped.geometry.parts import Part, Prism, steel_part, strong_part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, clearance, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
@@ -129,8 +129,7 @@ def _pins(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             room_mm=_PIN_THREAD_MM,
             direction=1.0,
             material=materials.steel,
-            count=gears.planets,
-            pitch_radius_mm=at.r_pins,
+            holes=Pattern(radius_mm=M3.hole, pitch_radius_mm=at.r_pins, count=gears.planets),
             group=Group.OUTPUT,
             note="holds the secondary carrier on its pin",
         ),
@@ -211,14 +210,12 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
         body += slab(at.z_secondary_front, z_tapped, at.webs.outline, *web_holes)
         body += slab(z_tapped, at.z_shoulder, at.webs.outline)
     return (
-        Part(
+        strong_part(
             name="carrier",
             role=Role.CARRIER,
             material=materials.aluminium,
             prisms=body,
-            process="machined",
             group=Group.OUTPUT,
-            grade=ALLOYS["aw_7075_t6"],
             fits=(
                 Fit(diameter_mm=2.0 * at.r_bore, zone="h6", seat=True),
                 Fit(diameter_mm=2.0 * seat, zone="J7", seat=True),
@@ -239,13 +236,12 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             ),
         ),
         _secondary_carrier(at, settings, pins),
-        Part(
+        steel_part(
             name="retaining_ring",
             role=Role.RETAINING_RING,
             visibility=Visibility.INSIDE,
             material=materials.steel,
             prisms=tube(at.z_bearing_front, z_ring, ring.r_free, ring.r_groove),
-            process="bought",
             group=Group.OUTPUT,
             catalogue_mass_kg=ring.mass_kg,
             note=ring.name and f"{ring.name}, in the carrier's groove before the main bearing",
@@ -271,7 +267,7 @@ def _secondary_carrier(at: Layout, settings: ActuatorSettings, pins: Pattern) ->
     screws = Pattern(radius_mm=M3.hole, pitch_radius_mm=at.r_pins, count=at.gears.planets)
     web_holes = _web_holes(at, WEB_SCREW.hole)
     z_split = at.z_secondary_front - carrier.pin_depth_mm
-    return Part(
+    return strong_part(
         name="secondary_carrier",
         role=Role.CARRIER,
         visibility=Visibility.INSIDE,
@@ -280,9 +276,7 @@ def _secondary_carrier(at: Layout, settings: ActuatorSettings, pins: Pattern) ->
             *slab(z_split, at.z_secondary_front, at.r_secondary_out, at.r_secondary_in, pins, *web_holes),
             *slab(at.z_secondary_back, z_split, at.r_secondary_out, at.r_secondary_in, screws, *web_holes),
         ),
-        process="machined",
         group=Group.OUTPUT,
-        grade=ALLOYS["aw_7075_t6"],
         fits=(Fit(diameter_mm=carrier.pin_diameter_mm, zone="H7"),),
         features=(
             clearance(M3, (screws,), at.z_secondary_back, z_split, countersunk="low"),
@@ -304,9 +298,7 @@ def _web_holes(at: Layout, radius_mm: float) -> tuple[Pattern, ...]:
 
 def _web_screws(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     """Build the screws that clamp the second carrier to the webs from behind."""
-    if not _web_holes(at, WEB_SCREW.core):
-        return ()
-    return (
+    return tuple(
         screw_part(
             "web_screw",
             WEB_SCREW,
@@ -316,10 +308,9 @@ def _web_screws(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             room_mm=_WEB_THREAD_MM,
             direction=1.0,
             material=settings.materials.steel,
-            count=at.webs.count,
-            pitch_radius_mm=at.webs.r_screw_mm,
-            phase_rad=at.webs.phase_rad,
+            holes=holes,
             group=Group.OUTPUT,
             note="clamps the secondary carrier to a web",
-        ),
+        )
+        for holes in _web_holes(at, WEB_SCREW.hole)
     )

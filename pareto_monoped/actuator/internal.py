@@ -5,6 +5,7 @@ import numpy as np
 from pareto_monoped.actuator.features import (
     MOTOR_TAPPED_HOLE_MM,
     SPIGOT_MM,
+    backplate_screw,
     bought_bearing,
     casing_dowel_holes,
     casing_holes,
@@ -15,9 +16,11 @@ from pareto_monoped.actuator.features import (
     housing_screw,
     motor_holes,
     note_with,
+    rotor_part,
     shaft_end,
     slab,
     spigot,
+    stator_part,
     sun_part,
     tube,
     vents,
@@ -37,7 +40,7 @@ from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
-from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
+from pareto_monoped.geometry.roles import Group, Joint, JointKind
 from pareto_monoped.geometry.screws import M3, clearance, screw_for, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Pattern
 
@@ -127,8 +130,7 @@ def _bell_holes(settings: ActuatorSettings, radius_mm: float) -> Pattern:
 
 def _bell_dowel_holes(settings: ActuatorSettings) -> Pattern:
     """Return one hole for a dowel between every two of these bolts."""
-    coupling = settings.parts.coupling
-    return COUPLING_DOWEL.holes(coupling.bolt_circle_mm, coupling.bolt_count, np.pi / coupling.bolt_count)
+    return COUPLING_DOWEL.between(_bell_holes(settings, M3.hole))
 
 
 def _flange_holes(shell: InternalLayout, settings: ActuatorSettings, radius_mm: float) -> Pattern:
@@ -140,8 +142,7 @@ def _flange_holes(shell: InternalLayout, settings: ActuatorSettings, radius_mm: 
 
 def _flange_dowel_holes(shell: InternalLayout, settings: ActuatorSettings) -> Pattern:
     """Return the holes for dowels in every second gap of these bolts: they carry the ring's torque."""
-    bolts = settings.parts.interface.mount_bolt_count
-    return FLANGE_DOWEL.holes(2.0 * shell.r_flange_bolts, bolts // 2, np.pi / bolts)
+    return FLANGE_DOWEL.between(_flange_holes(shell, settings, M3.hole), every=2)
 
 
 def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
@@ -264,19 +265,10 @@ def _screws(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorS
             seat_mm=0.0,
             grip_mm=casing.plate_mm,
             direction=-1.0,
-            pitch_radius_mm=shell.r_flange_bolts,
+            holes=_flange_holes(shell, settings, M3.hole),
             note="flush with the mounting face",
         ),
-        housing_screw(
-            "backplate_screw",
-            settings,
-            head="cap",
-            seat_mm=shell.z_end,
-            grip_mm=casing.wall_mm,
-            direction=1.0,
-            pitch_radius_mm=at.r_bolts,
-            note="into the casing",
-        ),
+        backplate_screw(at, shell.z_end, casing.wall_mm, settings),
         screw_part(
             "coupling_screw",
             M3,
@@ -286,8 +278,7 @@ def _screws(at: Layout, shell: InternalLayout, motor: Motor, settings: ActuatorS
             room_mm=coupling.thickness_mm,
             direction=-1.0,
             material=steel,
-            count=coupling.bolt_count,
-            pitch_radius_mm=0.5 * coupling.bolt_circle_mm,
+            holes=_bell_holes(settings, M3.hole),
             group=Group.ROTOR,
             note="through the bell into the coupling, flush",
         ),
@@ -302,28 +293,19 @@ def _motor_parts(at: Layout, shell: InternalLayout, motor: Motor, settings: Actu
     bell_bore = float(settings.parts.spline.internal.tip_radius_mm) + _BELL_PLAY_MM
     z_bell, z_stator_back, screws = shell.z_bell, shell.z_stator_back, _bell_holes(settings, M3.hole)
     return (
-        Part(
-            name="motor_stator",
-            role=Role.MOTOR_STATOR,
-            visibility=Visibility.INSIDE,
+        stator_part(
             material=settings.materials.motor_stator,
             prisms=tube(z_stator_back, z_stator_back + height, at.r_stator_out, at.r_stator_in),
-            process="bought",
-            group=Group.HOUSING,
             catalogue_mass_kg=(1.0 - rotor_share) * kit.mass_kg,
             note=f"{motor.name}, frameless",
             joint=Joint(kind=JointKind.BONDED, how="bonded onto", partner="ring_housing"),
         ),
-        Part(
-            name="motor_rotor",
-            role=Role.MOTOR_ROTOR,
+        rotor_part(
             material=settings.materials.motor_rotor,
             prisms=(
                 *tube(z_bell, z_bell + height, at.r_motor, at.r_rotor_in),
                 *slab(shell.z_coupling, z_bell, at.r_motor, bell_bore, screws, _bell_dowel_holes(settings)),
             ),
-            process="bought",
-            group=Group.ROTOR,
             catalogue_mass_kg=rotor_share * kit.mass_kg,
             features=(clearance(M3, (screws,), shell.z_coupling, z_bell, countersunk="high"),),
             note=f"{motor.name}, frameless; countersink the bell's holes",

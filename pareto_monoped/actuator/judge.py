@@ -119,16 +119,13 @@ class Judge:
         """Judge all sets under the rules of the settings."""
         if self.settings.rules == "paper":
             screen = _Screen(self, gears, np.asarray(face_width_mm(gears, self.motor, self.family, self.settings)))
-            return self._by_lewis(screen)
+            near = screen.broken.sum(axis=0) <= 1
+            mass = np.full(len(near), np.inf)
+            mass[near] = self.mass_kg(screen.gears.where(near), screen.width_mm[near])
+            return screen.judged(mass, near)
         data = self.settings.parts.rating
         width = np.maximum(data.face_width_min_mm, data.face_modules_min * gears.module_mm)
         return self._by_rating(_Screen(self, gears, width))
-
-    def _by_lewis(self, screen: "_Screen") -> Judged:
-        near = screen.broken.sum(axis=0) <= 1
-        mass = np.full(len(near), np.inf)
-        mass[near] = self.mass_kg(screen.gears.where(near), screen.width_mm[near])
-        return screen.judged(mass, near)
 
     def _by_rating(self, screen: "_Screen") -> Judged:
         """Judge all sets under the rules ``iso6336``.
@@ -241,9 +238,14 @@ class _Rating:
         self.rated[rows] = True
 
     def lightest(self, place: int) -> Floats:
-        """Return the mass of the rated solution with this place in its interval, by the interval's tenths."""
+        """Return the mass of the rated solution with this place in its interval, by tenths; infinite where none is."""
         solved = self.rated & ~self.screen.broken.any(axis=0)
-        return _lightest(self.screen.tenths, np.where(solved, self.mass_kg, np.inf), place)
+        tenths, mass = self.screen.tenths, np.where(solved, self.mass_kg, np.inf)
+        found = np.full(10 * RATIO_HIGH, np.inf)
+        known = np.flatnonzero(np.isfinite(mass))
+        chosen = known[_rank(tenths[known], mass[known]) == place]
+        found[tenths[chosen]] = mass[chosen]
+        return found
 
     def rate_fitting(self, rows: NDArray[np.intp]) -> None:
         """Rate sets that break no other rule: a few of each interval, then all that may be lighter than the second.
@@ -305,12 +307,3 @@ def _rank(groups: NDArray[np.int64], values: Floats) -> NDArray[np.intp]:
     rank = np.empty(len(order), dtype=np.intp)
     rank[order] = np.arange(len(order)) - first
     return rank
-
-
-def _lightest(tenths: NDArray[np.int64], mass_kg: Floats, place: int) -> Floats:
-    """Return the lightest mass of each interval by its tenths, or the next by ``place``; infinite where none is."""
-    found = np.full(10 * RATIO_HIGH, np.inf)
-    known = np.flatnonzero(np.isfinite(mass_kg))
-    chosen = known[_rank(tenths[known], mass_kg[known]) == place]
-    found[tenths[chosen]] = mass_kg[chosen]
-    return found

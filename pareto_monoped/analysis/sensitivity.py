@@ -111,7 +111,7 @@ def _of_assumptions(
         whole[:, moving] = points
         design = np.repeat(row[list(NAMES)].to_numpy(dtype=np.float64), len(points), axis=0)
         built = variations(samples_at(ranges, whole), 1, data.calibration)
-        return _measured(evaluator(design, _kits(data, row, len(points)), variations=built), names)
+        return _measured(evaluator(design, np.repeat(data.kit_numbers(row), len(points)), variations=built), names)
 
     return tuple(every[k] for k in moving), simulate
 
@@ -131,7 +131,7 @@ def _of_variables(
             else:
                 moved = listed[np.minimum((values * len(listed)).astype(np.intp), len(listed) - 1)]
             designs[:, NAMES.index(factor.name)] = moved
-        return _measured(evaluator(designs, _kits(data, row, len(points))), names)
+        return _measured(evaluator(designs, np.repeat(data.kit_numbers(row), len(points))), names)
 
     return tuple(factor for factor, _ in places), simulate
 
@@ -153,10 +153,6 @@ def _places(data: StudyData, row: pd.DataFrame, name: str, within: float) -> tup
 
 def _factor(variable: Variable, lower: float, upper: float) -> Factor:
     return Factor(name=variable.name, label=variable.factor, lower=lower, upper=upper, unit=variable.unit)
-
-
-def _kits(data: StudyData, row: pd.DataFrame, count: int) -> NDArray[np.intp]:
-    return np.repeat(data.kit_numbers(row), count)
 
 
 def _measured(jumps: Evaluations, names: Sequence[str]) -> tuple[NDArray[np.bool_], Floats]:

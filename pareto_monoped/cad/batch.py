@@ -28,12 +28,9 @@ _lock = threading.Lock()
 class Progress:
     """How far a batch is."""
 
-    job: Job
-    """The one that was made last."""
-    made: int
-    """How many were made so far."""
-    total: int
-    """How many there are to make."""
+    job: Job  #: the one that was made last
+    made: int  #: how many were made so far
+    total: int  #: how many there are to make
     elapsed_s: float
 
     @property

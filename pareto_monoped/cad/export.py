@@ -34,9 +34,9 @@ from pareto_monoped.design import LENGTHS, Design
 from pareto_monoped.errors import CheckError
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
-from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
+from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.robot.population import robot_arrays
-from pareto_monoped.strength.factors import GearLife, JointFactor, gear_life, joint_factors
+from pareto_monoped.strength.factors import GearLife, gear_life, joint_factors
 from pareto_monoped.strength.joint import LOAD_NAMES, Loads, loads_of
 
 _AT_ONCE = 6  # drawings in a question: few, so that both processes end at about the same time
@@ -139,7 +139,6 @@ def export_design(
             searched=design,
             built=built,
             maps=joint_maps(maps),
-            jumps={},
             calibration=calibration,
             source=source,
             formats=wanted,
@@ -169,7 +168,13 @@ def export_design(
             files.write_meshes(folder, part_files, other_files, wanted)
             files.write_drawings(folder, product, record, wanted)
             files.write_models(folder, product, shown, built.arrays, built.design, calibration, wanted)
-            _write_tables(folder, product, record, checks, factors, life, leg_dimensions(maps))
+            dimensions = parameters(product, leg_dimensions(maps))
+            write(folder, "bom.csv", parts_list(product, factors))
+            write(folder, "strength.csv", strength_table(factors))
+            write(folder, "parameters.csv", parameters_csv(dimensions))
+            write(folder, "monoped_equations.txt", equations(dimensions))
+            write(folder, "checks.json", checks_record(checks))
+            write(folder, "README.md", readme(record, product, checks, record["formats"], factors, life))
             ordered.write(folder)
             record["files"] = [*files_in(folder), RECORD]
             write(folder, RECORD, json.dumps(record, indent=2) + "\n")
@@ -201,25 +206,6 @@ def _second_process(*, draws: bool) -> Iterator[None]:
         raise
 
 
-def _write_tables(
-    folder: Path,
-    product: Product,
-    record: Mapping[str, Any],
-    checks: Sequence[Check],
-    factors: Sequence[JointFactor],
-    life: GearLife | None,
-    leg: LegDimensions,
-) -> None:
-    """Write what every export has in words and numbers."""
-    dimensions = parameters(product, leg)
-    write(folder, "bom.csv", parts_list(product, factors))
-    write(folder, "strength.csv", strength_table(factors))
-    write(folder, "parameters.csv", parameters_csv(dimensions))
-    write(folder, "monoped_equations.txt", equations(dimensions))
-    write(folder, "checks.json", checks_record(checks))
-    write(folder, "README.md", readme(record, product, checks, record["formats"], factors, life))
-
-
 def _require_passed(checks: Sequence[Check], out_dir: Path) -> None:
     failures = [failure for check in checks for failure in check.failures]
     if failures:
@@ -248,9 +234,7 @@ def _jumps(designs: Mapping[str, Design], results: Evaluations) -> dict[str, dic
         name: {
             "status": str(results.status[k]),
             "reason": results.reason[k],
-            "height_m": _plain(results.height_m[k]),
-            "energy_j": _plain(results.energy_j[k]),
-            "gear_strike_safety": _plain(results.gear_strike_safety[k]),
+            **{name: _plain(results.of(name)[k]) for name in ("height_m", "energy_j", "gear_strike_safety")},
         }
         for k, name in enumerate(designs)
     }

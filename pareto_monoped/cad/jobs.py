@@ -47,16 +47,13 @@ def case_job(
     motor: str = PAPER_MOTOR,
     knee_motor: str | None = None,
     rules: RuleSet = DEFAULT_RULES,
-    folder: Path,
     formats: Sequence[str] | None = None,
-    force: bool = False,
-    hip_rad: float | None = None,
-    knee_rad: float | None = None,
     strength: bool | None = None,
+    **how: Any,
 ) -> Job:
     """Return the job for a row of the paper's Table I with the default calibration, our best model of that robot.
 
-    ``strength`` defaults to that of a study with this calibration; ``Job`` describes the other arguments.
+    ``strength`` defaults to that of a study with this calibration; ``how`` are ``folder`` and other fields of ``Job``.
 
     Raises:
         InputError: an unknown format.
@@ -69,30 +66,19 @@ def case_job(
         knee_motor=maps.knee.motor if maps.knee is not maps.hip else None,
         calibration=load_calibration(DEFAULT),
         rules=rules,
-        folder=folder,
         formats=chosen_formats(formats),
-        force=force,
         source={"case": case},
         strength=strength_for(DEFAULT) if strength is None else strength,
-        hip_rad=hip_rad,
-        knee_rad=knee_rad,
+        **how,
     )
 
 
 def trial_job(
-    data: "StudyData",
-    trial: int,
-    *,
-    folder: Path,
-    formats: Sequence[str] | None = None,
-    force: bool = False,
-    hip_rad: float | None = None,
-    knee_rad: float | None = None,
-    strength: bool | None = None,
+    data: "StudyData", trial: int, *, formats: Sequence[str] | None = None, strength: bool | None = None, **how: Any
 ) -> Job:
     """Return the job for one trial of a study, with its motors and its calibration as the study stores them.
 
-    ``strength`` defaults to what the study asks; ``Job`` describes the other arguments.
+    ``strength`` defaults to what the study asks; ``how`` are ``folder`` and other fields of ``Job``.
 
     Raises:
         InputError: an unknown format.
@@ -105,9 +91,7 @@ def trial_job(
         knee_motor=kit.knee.motor if kit.knee is not kit.hip else None,
         calibration=data.calibration,
         rules=data.study.rules,
-        folder=folder,
         formats=chosen_formats(formats),
-        force=force,
         source={
             "study": data.study.name,
             "trial": int(trial),
@@ -116,30 +100,19 @@ def trial_job(
             "sealed": data.sealed,
         },
         strength=data.study.strength if strength is None else strength,
-        hip_rad=hip_rad,
-        knee_rad=knee_rad,
+        **how,
     )
 
 
-def front_jobs(
-    data: "StudyData",
-    *,
-    folder: Path,
-    every: int = 1,
-    formats: Sequence[str] | None = None,
-    force: bool = False,
-    strength: bool | None = None,
-) -> list[Job]:
+def front_jobs(data: "StudyData", *, folder: Path, every: int = 1, **how: Any) -> list[Job]:
     """Return the jobs for the designs on a study's front, from the lowest jump to the highest.
 
     ``folder`` gets a folder ``trial_N`` per design; only each ``every``-th design is taken, beginning with the first.
+    ``how`` is as for ``trial_job``.
 
     Raises:
         InputError: an unknown format.
         DatabaseError: the study's motor or calibration is damaged.
     """
     trials = data.front()["trial"].astype(int).tolist()[::every]
-    return [
-        trial_job(data, trial, folder=folder / f"trial_{trial}", formats=formats, force=force, strength=strength)
-        for trial in trials
-    ]
+    return [trial_job(data, trial, folder=folder / f"trial_{trial}", **how) for trial in trials]

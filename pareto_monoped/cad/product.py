@@ -3,16 +3,12 @@
 from collections.abc import Iterator
 from concurrent.futures import Future
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from pareto_monoped.cad.assembly import ACTUATOR_UNITS, Instance, Pose, instances
 from pareto_monoped.cad.kernel.client import SolidFacts, StepAssembly, StepPlacement, solid_facts
 from pareto_monoped.cad.shape.meshes import Mesh, mesh_of
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.robot.build import Robot
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

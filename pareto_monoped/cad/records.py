@@ -103,7 +103,6 @@ def expected_record(job: Job) -> dict[str, Any]:
         searched=job.design,
         built=built,
         maps=maps,
-        jumps={},
         calibration=job.calibration,
         source=job.source,
         formats=(),

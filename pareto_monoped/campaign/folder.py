@@ -111,7 +111,7 @@ def places_of(campaign: Campaign, folder: Path) -> list[Place]:
 def strangers(folder: Path, places: Sequence[Place]) -> list[Path]:
     """Return databases in the folder that are of no study of the campaign."""
     used = {place.db for place in places}
-    return [db for db in _databases(folder) if db not in used]
+    return [db for db in sorted(folder.glob("*.db")) if db not in used]
 
 
 def stored_state(place: Place) -> Stored:
@@ -149,14 +149,10 @@ def is_ended(place: Place, stored: Stored) -> bool:
     return stored.summary.study == place.study and not any(name.endswith(".toml") for name in names)
 
 
-def _databases(folder: Path) -> list[Path]:
-    return sorted(folder.glob("*.db"))
-
-
 def _others(folder: Path, own: Iterable[Path]) -> dict[str, Path]:
     known = set(own)
     found = {}
-    for db in _databases(folder):
+    for db in sorted(folder.glob("*.db")):
         if db not in known and (stored := _meta(db)) is not None:
             found[_key(stored[0])] = db
     return found

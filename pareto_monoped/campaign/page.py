@@ -28,7 +28,7 @@ from pareto_monoped.campaign.results import (
     spread_of,
 )
 from pareto_monoped.measures import Measure, measure
-from pareto_monoped.report.page import asset, embedded_json, fingerprint
+from pareto_monoped.report.page import asset, embedded_json, policy
 from pareto_monoped.report.quantities import label_of, quantities_of
 from pareto_monoped.report.tables import safe
 
@@ -188,12 +188,8 @@ def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
     sections = sections_of(results, campaign.axes)
     own = "\n".join([*(asset(f"{name}.js") for name in SCRIPTS), _own("campaign.js")])
     script = f"(() => {{\n'use strict';\n{own}\n}})();\n"
-    policy = (
-        f"default-src 'none'; script-src {fingerprint(script)}; style-src 'unsafe-inline'; "
-        "img-src data: blob:; base-uri 'none'; form-action 'none'"
-    )
     return Template(_own("campaign.html")).substitute(
-        policy=policy,
+        policy=policy(script),
         title=safe(campaign.name),
         style=asset("style.css") + asset("print.css") + _own("campaign.css"),
         description=f'<p class="small">{safe(campaign.description)}</p>' if campaign.description else "",

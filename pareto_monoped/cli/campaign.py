@@ -3,7 +3,7 @@
 import json
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -151,17 +151,8 @@ def reports(standings: "Sequence[Standing]", *, as_json: bool) -> Iterator[Repor
 
 def print_table(standings: "Sequence[Standing]") -> None:
     """All studies and how they stand, on stdout."""
-    table = _titled("jumps", "front", "hypervolume", "time")
-    for one in standings:
-        table.add_row(
-            shortened(one.name, _NAME_WIDTH),
-            _jumps(one),
-            str(one.front) if one.front else "",
-            _volume(one),
-            f"{one.seconds:.1f} s" if one.seconds else "",
-            one.doing,
-        )
-    new_console(width=80).print(table)
+    cells = ((str(one.front) if one.front else "", f"{one.seconds:.1f} s" if one.seconds else "") for one in standings)
+    new_console(width=80).print(_shown(standings, "front", "time", cells))
 
 
 def studies(count: int) -> str:
@@ -264,31 +255,31 @@ def _of_interest(standings: "Sequence[Standing]", room: int) -> "list[Standing]"
     return [standings[k] for k in sorted(places[:room])]
 
 
-def _titled(*numbers: str) -> "Table":
-    """Return a table without rows: studies, columns of numbers, and how each study stands."""
+def _shown(standings: "Sequence[Standing]", second: str, last: str, cells: Iterable[tuple[str, str]]) -> "Table":
+    """Return a row per study with how it stands; ``cells`` belong under the titles of two columns of numbers."""
     from rich import box
     from rich.table import Table
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("study", no_wrap=True)
-    for title in numbers:
+    for title in ("jumps", second, "hypervolume", last):
         table.add_column(title, justify="right", no_wrap=True)
     table.add_column("state", no_wrap=True)
+    for one, (in_second, in_last) in zip(standings, cells, strict=True):
+        name = shortened(one.name, _NAME_WIDTH)
+        table.add_row(name, _jumps(one), in_second, _volume(one), in_last, one.doing)
     return table
 
 
 def _table(standings: "Sequence[Standing]") -> "Table":
-    table = _titled("jumps", "rate", "hypervolume", "left")
-    for one in standings:
-        table.add_row(
-            shortened(one.name, _NAME_WIDTH),
-            _jumps(one),
+    cells = (
+        (
             f"{one.per_second:.0f}/s" if one.per_second else "",
-            _volume(one),
             "" if one.seconds_left is None else clock(one.seconds_left),
-            one.doing,
         )
-    return table
+        for one in standings
+    )
+    return _shown(standings, "rate", "left", cells)
 
 
 def _jumps(standing: "Standing") -> str:

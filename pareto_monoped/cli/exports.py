@@ -4,7 +4,7 @@ import math
 import signal
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -104,28 +104,19 @@ def export(
 
         names = None if formats is None else [name.strip() for name in formats.split(",")]
         dropped = {name for name, out in (("pdf", no_drawings), ("assembly", no_assembly)) if out}
-        angles = {"hip_rad": _radians(hip_deg), "knee_rad": _radians(knee_deg)}
-        strength = False if no_strength else None
+        angles: dict[str, Any] = {"hip_rad": _radians(hip_deg), "knee_rad": _radians(knee_deg)}
+        how: dict[str, Any] = {"folder": output, "formats": names, "force": force}
+        asked = how | {"strength": False if no_strength else None}
         if record is not None:
-            _one(_without(dropped, record_job(record, folder=output, formats=names, force=force, note=_note)))
+            _one(_without(dropped, record_job(record, **how, note=_note)))
         elif case is not None:
             hip, knee = options.chosen_motors(motor, hip_motor, knee_motor)
-            job = case_job(
-                case,
-                motor=hip,
-                knee_motor=knee,
-                rules=rules or DEFAULT_RULES,
-                folder=output,
-                formats=names,
-                force=force,
-                strength=strength,
-                **angles,
-            )
+            job = case_job(case, motor=hip, knee_motor=knee, rules=rules or DEFAULT_RULES, **asked, **angles)
             _one(_without(dropped, job))
         elif whole_front:
             data = _read(_given(db))
             refuse_empty(data.front(), data)
-            jobs = front_jobs(data, folder=output, every=every, formats=names, force=force, strength=strength)
+            jobs = front_jobs(data, every=every, **asked)
             _many([_without(dropped, job) for job in jobs], workers or cores(), place)
         else:
             from pareto_monoped.analysis.choices import with_numbered
@@ -137,9 +128,7 @@ def export(
             refuse_empty(rows, data)
             picked = pick(rows, wanted, data.study.objectives)
             _note(wrapped(picked.why))
-            trial = picked.trial
-            job = trial_job(data, trial, folder=output, formats=names, force=force, strength=strength, **angles)
-            _one(_without(dropped, job))
+            _one(_without(dropped, trial_job(data, picked.trial, **asked, **angles)))
 
 
 def _read(db: StudyPlace) -> "StudyData":
@@ -197,23 +186,17 @@ def _note(text: str) -> None:
 
 def _one(job: "Job") -> None:
     from pareto_monoped.cad.batch import run
+    from pareto_monoped.definition.study import NO_STRENGTH
 
     record = run(job, progress=lambda step: _note(f"{step} ..."), note=note)
     _note(f"wrote {job.folder} ({len(record['files'])} files)")
-    _say_of_strength([job])
+    if not job.strength:
+        note(NO_STRENGTH)
     for name in ("searched", "as_built"):
         jump = record["jumps"][name]
         height, energy = jump["height_m"], jump["energy_j"]
         result = f"{height:.4f} m  {energy:.3f} J" if height is not None and energy is not None else jump["status"]
         echo(f"{name.replace('_', ' '):<9} {result}")
-
-
-def _say_of_strength(jobs: "list[Job]") -> None:
-    """Say that designs may not hold, where nobody asked for it."""
-    from pareto_monoped.definition.study import NO_STRENGTH
-
-    if not all(job.strength for job in jobs):
-        note(NO_STRENGTH)
 
 
 def _many(jobs: "list[Job]", workers: int, place: options.Where) -> None:

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from pareto_monoped.analysis.alternatives import Alternative
     from pareto_monoped.analysis.robustness import RobustTrials
     from pareto_monoped.definition.study import Study
-    from pareto_monoped.measures import Measure
     from pareto_monoped.pareto.objectives import Objectives
     from pareto_monoped.pareto.selectors import Selector
     from pareto_monoped.storage.reader import StudyData
@@ -75,6 +74,7 @@ def front(
     Under other objectives than its own, a study's front is what its trials happen to hold: they were not searched for,
     and the audit has not seen all of them.
     """
+    from pareto_monoped.analysis.remarks import why_no_front
     from pareto_monoped.storage.front_reader import read_front
     from pareto_monoped.storage.kept_front import foreign_note
     from pareto_monoped.storage.reader import read_study
@@ -94,8 +94,8 @@ def front(
             unaudited = int((~rows["trial"].isin(data.audits["trial"])).sum())
             note(f"designs without an audit: {unaudited} of {len(rows)}")
     say_of_study(study, sealed=sealed)
-    if len(rows) == 0:
-        _say_why_empty(db)
+    if len(rows) == 0 and len((whole := read_study(db)).trials):
+        note(why_no_front(whole))
     rows = _spread(rows[shown_columns(study, used, chosen)], most)
     if csv_file is not None:
         from pareto_monoped.files import write_text
@@ -109,16 +109,6 @@ def front(
         _print_table(rows, chosen)
         if most is None and len(rows) > _MANY:
             note(f"the front has {len(rows)} designs; --most 40 shows 40 of them, evenly spread")
-
-
-def _say_why_empty(db: StudyPlace) -> None:
-    """Note why a study with trials has no front."""
-    from pareto_monoped.analysis.remarks import why_no_front
-    from pareto_monoped.storage.reader import read_study
-
-    data = read_study(db)
-    if len(data.trials):
-        note(why_no_front(data))
 
 
 _MANY = 100  #: Designs of a table that is told how to be shorter: more than two screens. Our own choice.
@@ -160,11 +150,6 @@ def _objectives(given: str | None, data: "StudyData") -> "Objectives":
     return chosen
 
 
-def _decimals(entry: "Measure") -> int:
-    """Return decimals in the stored unit: one more than reports show."""
-    return entry.decimals + 1 + round(math.log10(entry.scale))
-
-
 def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
     shown = [variable for variable in VARIABLES if variable.name in rows.columns]
     heads = [f"{entry.short} {entry.unit}".removesuffix(" 1") for entry in objectives.measures]
@@ -195,11 +180,13 @@ def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
     words = " ".join(f"{head:>{width}}" for head, width in zip(heads, widths, strict=True))
     names = "".join(f" {titles[name]:<{width}}" for name, width in motors.items())
     echo(f"{'trial':>6} {words} {symbols}{names}".rstrip())
+    # One more than reports show, in the stored unit.
+    decimals = [entry.decimals + 1 + round(math.log10(entry.scale)) for entry in objectives.measures]
     for _, row in rows.iterrows():
         values = " ".join(number(row[variable.name]) for variable in shown)
         goals = " ".join(
-            f"{row[entry.name]:{width}.{_decimals(entry)}f}"
-            for entry, width in zip(objectives.measures, widths, strict=True)
+            f"{row[name]:{width}.{digits}f}"
+            for name, width, digits in zip(objectives.names, widths, decimals, strict=True)
         )
         names = "".join(f" {row[name]:<{width}}" for name, width in motors.items())
         echo(f"{int(row['trial']):6d} {goals} {values}{names}".rstrip())

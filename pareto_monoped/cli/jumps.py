@@ -291,8 +291,7 @@ def table1(as_json: bool) -> None:
     ratios = sorted(
         {ratio for case in PAPER_CASES.values() for ratio in (case.design.hip_ratio, case.design.knee_ratio)}
     )
-    stand_ins = filter(None, map(reference.stand_in, ratios))
-    for text in stand_ins:
+    for text in filter(None, map(reference.stand_in, ratios)):
         note(f"reference: {text}")
     rows = rows_of(paper, reference)
     if as_json:

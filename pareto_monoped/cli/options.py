@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from pareto_monoped.cli.terminal import echo
-from pareto_monoped.design import PAPER_MOTOR
+from pareto_monoped.design import CONSTRAINT_NAMES, NAMES, PAPER_MOTOR
 from pareto_monoped.errors import DatabaseError, InputError, ParetoMonopedError, complaint
 from pareto_monoped.storage.address import is_address
 from pareto_monoped.storage.place import place_of
@@ -133,15 +133,7 @@ def _studies() -> Iterable[str]:
     return shipped_studies()
 
 
-def _constraints() -> Iterable[str]:
-    from pareto_monoped.design import CONSTRAINT_NAMES
-
-    return CONSTRAINT_NAMES
-
-
 def _variables() -> Iterable[str]:
-    from pareto_monoped.design import NAMES
-
     return (f"{name}=" for name in NAMES)
 
 
@@ -179,7 +171,7 @@ def trials(ctx: "click.Context", _: "click.Parameter", incomplete: str) -> "list
 motors = _completing(_motors, files=True)
 calibrations = _completing(_calibrations, files=True)
 studies = _completing(_studies)
-constraints = _completing(_constraints)
+constraints = _completing(lambda: CONSTRAINT_NAMES)
 variables = _completing(_variables)
 measures = _completing(_measures)
 conditions = _completing(_conditions)

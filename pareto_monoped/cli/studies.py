@@ -2,7 +2,7 @@
 
 import json
 import textwrap
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import fields
 from pathlib import Path
@@ -203,10 +203,6 @@ def _at_height(facts: dict[str, Any]) -> dict[str, str]:
     return lines
 
 
-def _say(line: str) -> None:
-    echo(line, err=True)
-
-
 def _said(text: str) -> None:
     """Print what a run has to say besides its progress."""
     echo(wrapped(text), err=True)
@@ -216,22 +212,17 @@ def _finish(summary: "RunSummary", as_json: bool) -> int:
     """Say how a run ended; returns the exit code."""
     code = 130 if summary.stop_reason == "interrupted" else 0
     from pareto_monoped.analysis.remarks import remarks
+    from pareto_monoped.definition.study import NO_STRENGTH
 
     found = remarks(summary.data)
     if as_json:
         facts = {one.name: getattr(summary, one.name) for one in fields(summary) if one.name != "data"}
         echo(json.dumps({"event": "end"} | facts | {"db": str(summary.db), "remarks": found}))
-    else:
-        _print_end(summary, found)
-    return code
-
-
-def _print_end(summary: "RunSummary", found: Sequence[str]) -> None:
-    from pareto_monoped.definition.study import NO_STRENGTH
-
-    _say(
+        return code
+    echo(
         f"{summary.db}: {summary.evaluations} evaluations ({summary.new_evaluations} new, {summary.seconds:.1f} s), "
-        f"{_REASONS[summary.stop_reason]}"
+        f"{_REASONS[summary.stop_reason]}",
+        err=True,
     )
     echo(
         f"front: {summary.front_size} designs, hypervolume {summary.hypervolume:.4f} {summary.hypervolume_unit}"
@@ -242,6 +233,7 @@ def _print_end(summary: "RunSummary", found: Sequence[str]) -> None:
     said = (*strength, *found) if summary.front_size else (*found, *strength)
     for line in said:
         note(line)
+    return code
 
 
 @contextmanager
@@ -297,7 +289,7 @@ def _line_reports() -> "Callable[[Progress], None]":
         nonlocal last
         if time.monotonic() - last >= _SECONDS_BETWEEN_LINES:
             last = time.monotonic()
-            _say(_described(progress))
+            echo(_described(progress), err=True)
 
     return show
 

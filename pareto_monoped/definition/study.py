@@ -263,6 +263,11 @@ def _require_names(study: Study, source: str) -> None:
         require_calibration_name(study.calibration, key=f"{source}: calibration")
 
 
+_AS_IN_FILE = (
+    *("name", "description", "case", "calibration", "evaluations", "seed", "stop", "audit", "strength", "gear_list"),
+)
+
+
 def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
     """Return a study from plain values, the keys of a study file; raise ``StudyError`` for impossible ones."""
     file = checked(StudyFile, values, source=source, error=StudyError)
@@ -272,23 +277,15 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
     robust = any(map(is_robust, objectives.names))
     constraints = constraints_of(file.constraints, strength=file.strength, robust=robust, source=source)
     table = {} if file.uncertainty is None and any(map(is_robust, constraints.measures)) else file.uncertainty
+    plain: dict[str, Any] = {name: getattr(file, name) for name in _AS_IN_FILE}
+    plain |= named_motors(file.motor, file.hip_motor, file.knee_motor, source)
     return Study(
-        name=file.name,
-        description=file.description,
-        case=file.case,
-        **named_motors(file.motor, file.hip_motor, file.knee_motor, source),
-        calibration=file.calibration,
+        **plain,
         rules=rules,
-        evaluations=file.evaluations,
-        seed=file.seed,
         variables=variables_of(file.variables, file.case, source),
         objectives=objectives,
         constraints=constraints,
         reference_point=corner,
-        stop=file.stop,
-        audit=file.audit,
-        strength=file.strength,
-        gear_list=file.gear_list,
         uncertainty=None if table is None else sampling_of(table, source=source),
         algorithm=algorithm_of(file, corner, source),
         shared_iterations=False,

@@ -71,14 +71,11 @@ def _variable(name: str, given: Any, source: str) -> Bounds | float:
         return bounds
     if not isinstance(given, int | float):
         low, high = _limits(name)
-        allowed = f"a number from {low:g} to {high:g}, or a range such as {_range_example(name)}"
+        usual = next(variable for variable in VARIABLES if variable.name == name)
+        example = f'{{"lower": {usual.lower:g}, "upper": {usual.upper:g}}}'
+        allowed = f"a number from {low:g} to {high:g}, or a range such as {example}"
         raise StudyError(complaint(key, given, allowed, "correct it"))
     return number_of(key, name, given)
-
-
-def _range_example(name: str) -> str:
-    bounds = next(variable for variable in VARIABLES if variable.name == name)
-    return f'{{"lower": {bounds.lower:g}, "upper": {bounds.upper:g}}}'
 
 
 def _limits(name: str) -> tuple[float, float]:

@@ -1,6 +1,6 @@
 """Hardened parallel pins (ISO 8734, type A) as parts, and the holes that they stand in."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -52,6 +52,12 @@ class Dowel:
         """Return the holes for dowels on a circle."""
         return Pattern(
             radius_mm=self.radius_mm, pitch_radius_mm=0.5 * pitch_circle_mm, count=count, phase_rad=phase_rad
+        )
+
+    def between(self, bolts: Pattern, *, every: int = 1) -> Pattern:
+        """Return the holes for dowels on the circle of bolts, in the middle of every gap, or of every second one."""
+        return replace(
+            bolts, radius_mm=self.radius_mm, count=bolts.count // every, phase_rad=float(np.pi / bolts.count)
         )
 
     def length_mm(self, room_mm: Numbers) -> Numbers:

@@ -37,31 +37,15 @@ def involute(angle_rad: Numbers) -> Numbers:
     return np.tan(angle_rad) - angle_rad
 
 
-def half_angle(
-    *,
-    radius_mm: Numbers,
-    teeth: Numbers,
-    module_mm: Numbers,
-    thinning_mm: Numbers = 0.0,
-    shift: Numbers = 0.0,
-    pressure_angle_rad: float,
-) -> NDArray[np.float64]:
-    """Half angle psi of a tooth at a radius, in rad.
-
-    Args:
-        radius_mm: where.
-        teeth: number of teeth.
-        module_mm: reference module.
-        thinning_mm: by how much the teeth are thinner on the reference circle.
-        shift: profile shift over module.
-        pressure_angle_rad: on the reference circle.
-    """
-    base = 0.5 * _array(module_mm) * _array(teeth) * np.cos(pressure_angle_rad)
+def half_angle(gear: "ExternalGear | InternalGear", radius_mm: Numbers, thinning_mm: Numbers) -> NDArray[np.float64]:
+    """Half angle psi in rad of a tooth at a radius; teeth are thinner by ``thinning_mm`` on the reference circle."""
+    module, teeth, angle = _array(gear.module_mm), _array(gear.teeth), gear.pressure_angle_rad
+    base = 0.5 * module * teeth * np.cos(angle)
     tangent = np.sqrt(np.maximum(np.square(radius_mm / base) - 1.0, 0.0))
     unwound = tangent - np.arctan(tangent)
-    pitch = np.pi / (2.0 * _array(teeth)) - _array(thinning_mm) / (_array(module_mm) * _array(teeth))
-    pitch = pitch + 2.0 * _array(shift) * np.tan(pressure_angle_rad) / _array(teeth)
-    return np.asarray(pitch + np.tan(pressure_angle_rad) - pressure_angle_rad - unwound)
+    pitch = np.pi / (2.0 * teeth) - _array(thinning_mm) / (module * teeth)
+    pitch = pitch + 2.0 * _array(gear.shift) * np.tan(angle) / teeth
+    return np.asarray(pitch + np.tan(angle) - angle - unwound)
 
 
 def _teeth_area_mm2(
@@ -91,14 +75,7 @@ def _flank(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Half angle of a tooth at a radius, the tangent of the pressure angle there, and the base circle's radius."""
     base = _array(gear.base_radius_mm)
-    psi = half_angle(
-        radius_mm=radius_mm,
-        teeth=gear.teeth,
-        module_mm=gear.module_mm,
-        thinning_mm=thinning_mm,
-        shift=gear.shift,
-        pressure_angle_rad=gear.pressure_angle_rad,
-    )
+    psi = half_angle(gear, radius_mm, thinning_mm)
     # Below the base circle psi stays what it is there, so psi r^2 is right and the tangent terms vanish.
     return psi, np.sqrt(np.maximum(np.square(radius_mm / base) - 1.0, 0.0)), base
 
@@ -135,14 +112,7 @@ def fillet_room_rad(gear: "ExternalGear | InternalGear") -> Numbers:
     rho, base = FILLET * _array(gear.module_mm), _array(gear.base_radius_mm)
     inner = isinstance(gear, InternalGear)
     centre = gear.root_radius_mm - rho if inner else gear.root_radius_mm + rho
-    psi = half_angle(
-        radius_mm=centre,
-        teeth=gear.teeth,
-        module_mm=gear.module_mm,
-        thinning_mm=-_array(gear.backlash_mm) if inner else gear.backlash_mm,
-        shift=gear.shift,
-        pressure_angle_rad=gear.pressure_angle_rad,
-    )
+    psi = half_angle(gear, centre, -_array(gear.backlash_mm) if inner else gear.backlash_mm)
     if inner:
         return psi - rho / base
     # A fillet that ends below the base circle touches a radial line there.
@@ -197,18 +167,7 @@ class ExternalGear(_Teeth):
     def tip_thickness_mm(self) -> Numbers:
         """Thickness of a tooth on the tip circle, along the arc."""
         tip = self.tip_radius_mm
-        return (
-            2.0
-            * tip
-            * half_angle(
-                radius_mm=tip,
-                teeth=self.teeth,
-                module_mm=self.module_mm,
-                thinning_mm=self.backlash_mm,
-                shift=self.shift,
-                pressure_angle_rad=self.pressure_angle_rad,
-            )
-        )
+        return 2.0 * tip * half_angle(self, tip, self.backlash_mm)
 
     def area_mm2(self) -> Numbers:
         """The first of ``moments``."""
@@ -244,14 +203,7 @@ class InternalGear(_Teeth):
     def tip_thickness_mm(self) -> Numbers:
         """Thickness of a tooth on the tip circle, along the arc: what the space leaves of the pitch."""
         tip = self.tip_radius_mm
-        space = half_angle(
-            radius_mm=tip,
-            teeth=self.teeth,
-            module_mm=self.module_mm,
-            thinning_mm=-_array(self.backlash_mm),
-            shift=self.shift,
-            pressure_angle_rad=self.pressure_angle_rad,
-        )
+        space = half_angle(self, tip, -_array(self.backlash_mm))
         return 2.0 * tip * (np.pi / _array(self.teeth) - space)
 
     def area_mm2(self) -> Numbers:

@@ -167,6 +167,9 @@ def screw_length_mm(grip_mm: Numbers, room_mm: Numbers) -> Numbers:
     return LENGTHS_MM[row][()]
 
 
+_ALONE = Pattern(radius_mm=0.0, pitch_radius_mm=0.0, count=1)
+
+
 def screw_part(
     name: str,
     screw: Screw,
@@ -177,9 +180,7 @@ def screw_part(
     room_mm: Numbers,
     direction: float,
     material: Material = MATERIALS.steel,
-    count: Numbers = 1,
-    pitch_radius_mm: Numbers = 0.0,
-    phase_rad: Numbers = 0.0,
+    holes: Pattern = _ALONE,
     places_mm: tuple[tuple[Numbers, Numbers, Numbers], ...] | None = None,
     group: Group = Group.FIXED,
     role: Role = Role.SCREW,
@@ -190,7 +191,8 @@ def screw_part(
     """Build a bought screw, of the greatest length for which the thread has room.
 
     ``head``: ``cap`` and ``hexagon`` stand on the seat; ``countersunk`` is flush with it; ``grip_mm``: from the seat to
-    the beginning of the thread; ``room_mm``: depth of the thread; ``direction``: of driving along z, -1 or 1.
+    the beginning of the thread; ``room_mm``: depth of the thread; ``direction``: of driving along z, -1 or 1;
+    ``holes``: of any size, one per screw.
 
     Raises:
         DesignError: no catalogue length fits the grip and leaves a thread.
@@ -226,9 +228,9 @@ def screw_part(
         material=material,
         prisms=drawn,
         process="bought",
-        count=count,
-        pitch_radius_mm=pitch_radius_mm,
-        phase_rad=phase_rad,
+        count=holes.count,
+        pitch_radius_mm=holes.pitch_radius_mm,
+        phase_rad=holes.phase_rad,
         group=group,
         visibility=visibility,
         features=features,

@@ -11,8 +11,6 @@ from pareto_monoped.geometry.features import COARSE_PITCHES_MM
 
 YIELD_MPA: dict[str, float] = {"8.8": 640.0, "10.9": 940.0, "12.9": 1100.0}
 """0.2 % proof stress by property class (ISO 898-1, up to M16)."""
-TENSILE_MPA: dict[str, float] = {"8.8": 800.0, "10.9": 1040.0, "12.9": 1220.0}
-"""Tensile strength by property class (ISO 898-1, up to M16)."""
 FRICTION = 0.12
 """Of thread and head: the middle of class B of VDI 2230-1, table A5, in which screws wet with a thread locker lie."""
 _UTILISATION = {"cap": 0.9, "hexagon": 0.9, "countersunk": 0.75}

@@ -94,6 +94,16 @@ class ActuatorFit:
     torque_n_m: float  #: largest peak torque of the joint's actuators
 
     @property
+    def output_bolts(self) -> Pattern:
+        """Clearance holes of the bolts between output flange and coupling."""
+        return Pattern(radius_mm=M3.hole, pitch_radius_mm=self.output_pitch_radius_mm, count=self.output_holes)
+
+    @property
+    def mount_bolts(self) -> Pattern:
+        """Clearance holes of the bolts between the actuator's housing and a plate."""
+        return Pattern(radius_mm=M3.hole, pitch_radius_mm=self.mount_pitch_radius_mm, count=self.mount_holes)
+
+    @property
     def output_dowel(self) -> Pattern:
         """Holes of the dowels between the output flange and its coupling, as they are in the actuator's frame."""
         gap = np.pi / self.output_holes

@@ -82,8 +82,7 @@ def _reliefs(d: LegDimensions) -> Pattern:
 def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
     """Build the plate that the hip actuator is bolted to, with the screws."""
     z0, z1 = d.hip_mount_mm, d.hip_mount_mm + d.cheek_mm
-    mount = Pattern(radius_mm=M3.hole, pitch_radius_mm=d.hip.mount_pitch_radius_mm, count=d.hip.mount_holes)
-    mount_dowels = replace(d.hip.mount_dowel, count=d.hip.mount_dowels // 2)
+    mount, mount_dowels = d.hip.mount_bolts, replace(d.hip.mount_dowel, count=d.hip.mount_dowels // 2)
     seats = holes_at(hip_seat_screws(d), M4.hole)
     return (
         dowel_part(
@@ -128,8 +127,7 @@ def _near_cheek(d: LegDimensions) -> tuple[Part, ...]:
             grip_mm=d.cheek_mm,
             room_mm=d.hip.mount_thread_mm,
             direction=-1.0,
-            count=d.hip.mount_holes,
-            pitch_radius_mm=d.hip.mount_pitch_radius_mm,
+            holes=mount,
             grade="10.9",
             note="flush, into the hip actuator's case",
         ),

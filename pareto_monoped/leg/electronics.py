@@ -5,12 +5,13 @@ the thigh's swing only twists them. Cable ties hold them to the driver's plate; 
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from pareto_monoped.geometry.parts import Part, sheet_part
 from pareto_monoped.geometry.roles import Role, Visibility
-from pareto_monoped.geometry.screws import HEXAGON_FLATS_MM, M4, between, clearance, hexagon, screw_part
+from pareto_monoped.geometry.screws import HEXAGON_FLATS_MM, M4, Screw, between, clearance, hexagon, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Shape, rectangle
 from pareto_monoped.leg.actuator_fit import MotorDriver
 from pareto_monoped.leg.dimensions import LegDimensions
@@ -88,18 +89,15 @@ def driver_parts(joint: str, face_mm: Numbers, direction: float, d: LegDimension
             ),
             note=f"{DRIVER_PLATE_MM:g} mm sheet; cable ties through the upper holes",
         ),
-        _gently_tightened(
-            screw_part(
-                f"{joint}_standoff_screw",
-                driver.screw,
-                head="countersunk",
-                seat_mm=face_mm,
-                grip_mm=DRIVER_PLATE_MM,
-                room_mm=_THREAD,
-                direction=direction,
-                places_mm=holes,
-                note="flush, into the standoff",
-            )
+        _standoff_screw(
+            f"{joint}_standoff_screw",
+            driver.screw,
+            head="countersunk",
+            seat_mm=face_mm,
+            grip_mm=DRIVER_PLATE_MM,
+            direction=direction,
+            places_mm=holes,
+            note="flush, into the standoff",
         ),
         Part(
             name=f"{joint}_standoff",
@@ -112,24 +110,22 @@ def driver_parts(joint: str, face_mm: Numbers, direction: float, d: LegDimension
             note=f"hexagon standoff {driver.screw.name} x {_STANDOFF:g}, aluminium, female threads",
         ),
         _board(joint, under, over, direction, d),
-        _gently_tightened(
-            screw_part(
-                f"{joint}_driver_screw",
-                driver.screw,
-                head="cap",
-                seat_mm=over,
-                grip_mm=_BOARD,
-                room_mm=_THREAD,
-                direction=-direction,
-                places_mm=holes,
-                note="through the board into the standoff",
-            )
+        _standoff_screw(
+            f"{joint}_driver_screw",
+            driver.screw,
+            head="cap",
+            seat_mm=over,
+            grip_mm=_BOARD,
+            direction=-direction,
+            places_mm=holes,
+            note="through the board into the standoff",
         ),
     )
 
 
-def _gently_tightened(screw: Part) -> Part:
-    """Build a screw in a standoff, whose thread and board bear less than the screw."""
+def _standoff_screw(name: str, size: Screw, **own: Any) -> Part:
+    """Build a screw in a standoff, whose thread and board bear less than it; ``own`` is as for ``screw_part``."""
+    screw = screw_part(name, size, room_mm=_THREAD, **own)
     full = screw.fastening
     assert full is not None
     share = _STANDOFF_N_M[full.thread.diameter_mm] / full.torque_n_m

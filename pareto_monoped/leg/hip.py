@@ -37,7 +37,7 @@ def hip_joints(d: LegDimensions) -> tuple[Part, ...]:
 def _coupling_holes(fit: ActuatorFit, dowels: Pattern) -> tuple[Shape, ...]:
     """Return the holes for screws and dowels into the output flange, and lightening holes in the gaps that are left."""
     return (
-        Pattern(radius_mm=M3.hole, pitch_radius_mm=fit.output_pitch_radius_mm, count=fit.output_holes),
+        fit.output_bolts,
         dowels,
         Pattern(
             radius_mm=_RELIEF_RADIUS,
@@ -86,8 +86,7 @@ def _hip_coupling(d: LegDimensions) -> tuple[Part, ...]:
             grip_mm=-half_gap - d.hip_mount_mm,
             room_mm=d.hip.output_thread_mm,
             direction=-1.0,
-            count=d.hip.output_holes,
-            pitch_radius_mm=d.hip.output_pitch_radius_mm,
+            holes=d.hip.output_bolts,
             grade="10.9",
             note="from inside the thigh into the hip's output flange",
         ),
@@ -150,8 +149,7 @@ def _knee_mount_screw(d: LegDimensions) -> Part:
         grip_mm=d.plate_mm,
         room_mm=d.knee.mount_thread_mm,
         direction=1.0,
-        count=d.knee.mount_holes,
-        pitch_radius_mm=d.knee.mount_pitch_radius_mm,
+        holes=d.knee.mount_bolts,
         grade="8.8",
         note="from inside the thigh into the knee actuator's case",
     )
@@ -196,8 +194,7 @@ def _knee_drive(d: LegDimensions) -> tuple[Part, ...]:
             grip_mm=d.knee_mount_mm + half_tooth - d.sprocket_recess_mm,
             room_mm=d.knee.output_thread_mm,
             direction=1.0,
-            count=d.knee.output_holes,
-            pitch_radius_mm=d.knee.output_pitch_radius_mm,
+            holes=d.knee.output_bolts,
             group=Group.KNEE_DRIVE,
             grade="10.9",
             note="through the sprocket into the knee's output flange",

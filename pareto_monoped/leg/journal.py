@@ -91,8 +91,7 @@ def journal_parts(
             grip_mm=_FLANGE + back_clearance_mm,
             room_mm=_THREAD,
             direction=-1.0,
-            count=d.knee.back_holes,
-            pitch_radius_mm=d.knee.back_pitch_radius_mm,
+            holes=holes,
             note="into the knee motor's own mounting pattern",
         ),
     )

@@ -41,13 +41,8 @@ _NUT_SPARE = 0.7  # by which the bolt stands out of it, one pitch of its thread
 
 def cup_holes(y_mm: Numbers, radius_mm: float, d: LegDimensions) -> Pattern:
     """Return the holes for the screws of a bearing cup around a knee axis at height ``y_mm``."""
-    return Pattern(
-        radius_mm=radius_mm, pitch_radius_mm=_cup_pitch_radius_mm(d), count=_CUP_SCREWS, phase_rad=np.pi / 4, y_mm=y_mm
-    )
-
-
-def _cup_pitch_radius_mm(d: LegDimensions) -> float:
-    return d.bearing_outer_radius_mm + 0.5 * _CUP_WALL
+    circle_mm = d.bearing_outer_radius_mm + 0.5 * _CUP_WALL
+    return Pattern(radius_mm=radius_mm, pitch_radius_mm=circle_mm, count=_CUP_SCREWS, phase_rad=np.pi / 4, y_mm=y_mm)
 
 
 def knee_bearings(thigh_length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
@@ -81,9 +76,7 @@ def knee_bearings(thigh_length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...
                 grip_mm=d.plate_mm,
                 room_mm=_CUP_THREAD,
                 direction=direction,
-                count=_CUP_SCREWS,
-                pitch_radius_mm=_cup_pitch_radius_mm(d),
-                phase_rad=np.pi / 4,
+                holes=threads,
                 places_mm=((0.0, y_mm, 0.0),),
                 note="flush, from outside",
             )

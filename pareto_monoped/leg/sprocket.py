@@ -6,6 +6,7 @@ has to carry a tilting moment. The shaft's flange is clamped between sprocket an
 drive.
 """
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -65,11 +66,6 @@ def sprocket_outline(drive: ChainDrive) -> Path:
     return Path(tuple(pieces))
 
 
-def sprocket_screws(d: LegDimensions, radius_mm: float) -> Pattern:
-    """Return the holes of its screws."""
-    return Pattern(radius_mm=radius_mm, pitch_radius_mm=d.knee.output_pitch_radius_mm, count=d.knee.output_holes)
-
-
 def relief_holes(d: LegDimensions) -> Pattern:
     """Return the holes that lighten a sprocket."""
     return Pattern(radius_mm=_RELIEF_RADIUS, pitch_radius_mm=_RELIEF_PITCH_RADIUS, count=d.chain.teeth)
@@ -85,7 +81,7 @@ def sprocket_prisms(d: LegDimensions, head_mm: float) -> tuple[Prism, ...]:
             z0_mm,
             z1_mm,
             Circle(radius_mm=BORE_RADIUS),
-            sprocket_screws(d, screw_radius_mm),
+            replace(d.knee.output_bolts, radius_mm=screw_radius_mm),
             d.drive_dowel,
             relief_holes(d),
         )

@@ -151,7 +151,7 @@ def inner_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
     """Return the inner plate's holes around the hip axis: bore, screws into the hip's output, lightening."""
     return (
         Circle(radius_mm=BOSS_RADIUS + _BOSS_PLAY),
-        Pattern(radius_mm=M3.hole, pitch_radius_mm=d.hip.output_pitch_radius_mm, count=d.hip.output_holes),
+        d.hip.output_bolts,
         d.hip.output_dowel,
         Pattern(radius_mm=_INNER_RELIEF_RADIUS, pitch_radius_mm=_INNER_RELIEF_PITCH_RADIUS, count=6),
     )
@@ -164,7 +164,7 @@ def outer_hip_holes(d: LegDimensions) -> tuple[Shape, ...]:
     relief = min(_OUTER_RELIEF_MOST, 0.5 * (outside_mm - inside_mm))
     return (
         Circle(radius_mm=d.knee.coupler_radius_mm + _OUTER_BORE_PLAY),
-        Pattern(radius_mm=M3.hole, pitch_radius_mm=d.knee.mount_pitch_radius_mm, count=d.knee.mount_holes),
+        d.knee.mount_bolts,
         d.knee.mount_dowel,
         Pattern(radius_mm=relief, pitch_radius_mm=outside_mm - relief, count=6),
     )

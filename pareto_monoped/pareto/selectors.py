@@ -158,7 +158,8 @@ def _phrase(condition: Condition) -> str:
         return f"reach {_valued(condition)}"
     if condition.name == "energy_j" and condition.side == "max":
         return f"need at most {_valued(condition)}"
-    return f"have at {_side(condition)} {_valued(condition)} of {_words(condition.name)}"
+    side = "least" if condition.side == "min" else "most"
+    return f"have at {side} {_valued(condition)} of {_words(condition.name)}"
 
 
 def _unmet(values: Floats, condition: Condition) -> str:
@@ -220,7 +221,3 @@ def _unit(name: str) -> str:
 
 def _valued(condition: Condition) -> str:
     return f"{condition.value:g}{_unit(condition.name)}"
-
-
-def _side(condition: Condition) -> str:
-    return "least" if condition.side == "min" else "most"

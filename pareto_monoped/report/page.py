@@ -231,13 +231,8 @@ def literal_cases() -> tuple[dict[str, float | None], ...]:
 def page(payload: Payload) -> str:
     """Return the whole HTML text."""
     script = "(() => {\n'use strict';\n" + "\n".join(asset(f"{name}.js") for name in SCRIPTS) + "\n})();\n"
-    # Only this script may run, whatever else gets into the page, and nothing may be loaded.
-    policy = (
-        f"default-src 'none'; script-src {fingerprint(script)}; style-src 'unsafe-inline'; "
-        "img-src data: blob:; base-uri 'none'; form-action 'none'"
-    )
     return Template(asset("page.html")).substitute(
-        policy=policy,
+        policy=policy(script),
         title=safe(payload.title),
         style="".join(asset(f"{name}.css") for name in STYLES),
         head=head(payload),
@@ -268,9 +263,13 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} does not belong on the page")
 
 
-def fingerprint(script: str) -> str:
-    """Return what a page's policy calls the one script that may run."""
-    return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode('utf-8')).digest()).decode('ascii')}'"
+def policy(script: str) -> str:
+    """Return the policy of a page: only this script may run, whatever else gets there, and nothing may be loaded."""
+    fingerprint = base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii")
+    return (
+        f"default-src 'none'; script-src 'sha256-{fingerprint}'; style-src 'unsafe-inline'; "
+        "img-src data: blob:; base-uri 'none'; form-action 'none'"
+    )
 
 
 def asset(name: str) -> str:

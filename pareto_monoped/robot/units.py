@@ -4,7 +4,7 @@
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -41,7 +41,7 @@ class UnitKind:
 
     name: str  #: unique
     body: str  #: the body that carries it, one of ``BODIES``
-    turn: Floats  #: rotation from the unit's frame to the body's part frame
+    turn: Floats = field(default_factory=lambda: UPRIGHT)  #: rotation from the unit's frame to the body's part frame
     #: Where the unit's origin lies on the body's proximal joint axis, in the body's part frame; default: in the middle
     z_mm: Callable[[LegDimensions], float] = lambda leg: 0.0
     #: Added to the mass of its body after all other units. The last bit of a sum depends on its order, and so do the
@@ -79,22 +79,17 @@ def _journal(knee: Actuator, leg: LegDimensions) -> tuple[Part, ...]:
 
 UNITS: tuple[ActuatorSized | LinkSized, ...] = (
     ActuatorSized(
-        name="base_frame",
-        body="base",
-        turn=UPRIGHT,
-        joint="knee",
-        parts=lambda knee, leg: base_parts(1e-3 * knee.length_mm, leg),
+        name="base_frame", body="base", joint="knee", parts=lambda knee, d: base_parts(1e-3 * knee.length_mm, d)
     ),
     ActuatorSized(
         name="hip_actuator",
         body="base",
-        turn=UPRIGHT,
         z_mm=lambda leg: leg.hip_mount_mm,
         weighed_last=True,
         joint="hip",
         parts=lambda hip, _: hip.parts,
     ),
-    LinkSized(name="thigh", body="thigh", turn=UPRIGHT, length="thigh_length_m", parts=thigh_parts),
+    LinkSized(name="thigh", body="thigh", length="thigh_length_m", parts=thigh_parts),
     ActuatorSized(
         name="knee_actuator",
         body="thigh",
@@ -104,14 +99,8 @@ UNITS: tuple[ActuatorSized | LinkSized, ...] = (
         joint="knee",
         parts=lambda knee, _: knee.parts_bolted_at_back,
     ),
-    ActuatorSized(name="journal", body="thigh", turn=UPRIGHT, joint="knee", parts=_journal),
-    LinkSized(name="shank", body="shank", turn=UPRIGHT, length="shank_length_m", parts=shank_parts),
-    LinkSized(
-        name="foot",
-        body="shank",
-        turn=UPRIGHT,
-        length="shank_length_m",
-        parts=lambda length_m, leg: (foot_part(length_m, leg),),
-    ),
+    ActuatorSized(name="journal", body="thigh", joint="knee", parts=_journal),
+    LinkSized(name="shank", body="shank", length="shank_length_m", parts=shank_parts),
+    LinkSized(name="foot", body="shank", length="shank_length_m", parts=lambda length, leg: (foot_part(length, leg),)),
 )
 """All units, from the base down to the foot: the order in which a robot lists them."""

@@ -66,7 +66,9 @@ class Evolution(Algorithm):
             for key in ("rank", "crowding"):
                 # Infeasible survivors have neither rank nor crowding distance. The ends of the front have an infinite
                 # crowding distance, which JSON cannot hold as a number.
-                state[key] = [None if value is None else _jsonable(float(value)) for value in population.get(key)]
+                numbers = [None if value is None else float(value) for value in population.get(key)]
+                # JSON holds an infinite number as text.
+                state[key] = [str(n) if n is not None and not np.isfinite(n) else n for n in numbers]
         return state
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
@@ -91,11 +93,6 @@ class Evolution(Algorithm):
         algorithm.pop = population
         algorithm.n_iter = int(state["iteration"])
         algorithm.is_initialized = True
-
-
-def _jsonable(value: float) -> float | str:
-    """Return a number as JSON can hold it: an infinite one as text."""
-    return value if np.isfinite(value) else str(value)
 
 
 class _Snap(Repair):  # type: ignore[misc]  # pymoo has no types

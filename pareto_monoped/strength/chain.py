@@ -57,11 +57,6 @@ _LIMIT_CYCLES = 2e6  # N_D of VDI 2230-1
 _LEAST_CYCLES = 1e4  # below, VDI 2230-1 gives no fatigue strength
 
 
-def stud_yield_n(diameter_mm: float, yield_mpa: float) -> float:
-    """Return the pull at which a thread's stress area yields."""
-    return thread_size(diameter_mm).stress_area_mm2 * yield_mpa
-
-
 def stud_fatigue_n(diameter_mm: float, cycles: float) -> float:
     """Return the swelling pull that a rolled thread bears so often: 0.85 (150 / d + 45) MPa (VDI 2230-1, 5.5.3)."""
     amplitude_mpa = 0.85 * (150.0 / diameter_mm + 45.0)
@@ -124,7 +119,8 @@ JOINTS = (
         formula="p A s / (s_duty F), with s the sliding path of a pin",
         source="Archard, J. Appl. Phys. 24 (1953); allowed pressure: 17 percent below that of ASME B29.1",
         required_source="the peak is taken for all of the path; 3 percent are within the travel of the turnbuckles"),
-    _row(name="turnbuckle_stud", required=1.5, parts=_ENDS, capacity=lambda s: stud_yield_n(_SIZE, FORK.yield_mpa),
+    _row(name="turnbuckle_stud", required=1.5, parts=_ENDS,
+        capacity=lambda s: thread_size(_SIZE).stress_area_mm2 * FORK.yield_mpa,
         formula="A_s R_e / F", source="stress area of ISO 898-1", required_source=_YIELD),
     _row(name="turnbuckle_fatigue", required=1.2, parts=_ENDS,
         capacity=lambda s: stud_fatigue_n(_SIZE, s.settings.parts.duty.jumps),

@@ -212,16 +212,6 @@ def ring_housing(s: Structure) -> float:
     return 1e-3 * dowel_force_n(pin, *layers) * float(pin.pitch_radius_mm)
 
 
-def pin_bending(s: Structure) -> float:
-    """Return the output torque at which a planet's pin yields in bending."""
-    return planet_pins(s)[0]
-
-
-def pin_seat(s: Structure) -> float:
-    """Return the output torque at which a planet's pin yields its shorter seat."""
-    return planet_pins(s)[1]
-
-
 def planet_pins(s: Structure) -> tuple[float, float]:
     """Return the output torques at which a planet's pin yields in bending, and at which it yields its shorter seat."""
     a, at, carrier = s.actuator, layout_of(s), s.settings.parts.carrier
@@ -246,9 +236,10 @@ _GEARBOX: tuple[_Row, ...] = (
     ("coupling_dowels", "n d l Rp0.2 r i / T", _DOWELS, _SHAPES, coupling_dowels, ("coupling_dowel",)),
     ("ring_bond", "tau 2 pi r^2 b / (1 - 1 / i) / T", "bonded cylinder, ISO 10123", _BONDS, ring, ("ring",)),
     ("ring_housing_dowels", "n d l Rp0.2 r / T", _DOWELS, _SHAPES, ring_housing, ("ring_housing_dowel",)),
-    ("planet_pin_bending", "8 W Rp0.2 / L n r / K_gamma / T", "beam on two supports", _SHAPES, pin_bending,
-        ("planet_pin",)),
-    ("planet_pin_seat", "2 d l Rp0.2 n r / K_gamma / T", _DOWELS, _SHAPES, pin_seat, ("planet_pin",)),
+    ("planet_pin_bending", "8 W Rp0.2 / L n r / K_gamma / T", "beam on two supports", _SHAPES,
+        lambda s: planet_pins(s)[0], ("planet_pin",)),
+    ("planet_pin_seat", "2 d l Rp0.2 n r / K_gamma / T", _DOWELS, _SHAPES,
+        lambda s: planet_pins(s)[1], ("planet_pin",)),
 )  # fmt: skip
 
 
@@ -298,11 +289,6 @@ def sheared_n(screw: Fastening) -> float:
     return float(screw.thread.core_area_mm2 * np.sqrt((yielding**2 - pulled**2) / 3.0))
 
 
-def clamped_beam_n(length_mm: float, modulus_mm3: float, yield_mpa: float) -> float:
-    """Return the force at the end of a beam, clamped at both ends, at which it yields: M = F L / 2."""
-    return 2.0 * modulus_mm3 * yield_mpa / length_mm
-
-
 def _at_output_n_m(force_n: float, count: float, radius_mm: float) -> float:
     return 1e-3 * count * force_n * radius_mm / _SHARE
 
@@ -337,7 +323,7 @@ def bending(s: Structure) -> float:
     carrier = max(
         (part for part in s.actuator.parts if part.role is Role.CARRIER), key=lambda part: float(part.mass_kg())
     )
-    force = clamped_beam_n(length, modulus, yield_mpa(carrier))
+    force = 2.0 * modulus * yield_mpa(carrier) / length  # M = F L / 2
     return _at_output_n_m(force, float(webs.count), float(webs.r_screw_mm))
 
 

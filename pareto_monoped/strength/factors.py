@@ -135,7 +135,7 @@ def strength_factors(designs: ArrayLike, maps: Maps, loads: Loads) -> Floats:
     """
     values, both = np.atleast_2d(complete(designs)), joint_maps(maps)
     table = capacities(both)
-    acting = np.stack([getattr(loads, name) for name in LOAD_NAMES], axis=1)
+    acting = np.stack([loads[name] for name in LOAD_NAMES], axis=1)
     result = np.empty((len(values), len(TABLE)))
     with np.errstate(divide="ignore", invalid="ignore"):
         for of in _ROWS:
@@ -147,7 +147,7 @@ def strength_factors(designs: ArrayLike, maps: Maps, loads: Loads) -> Floats:
             for k in _OTHERS[of]:
                 joint = TABLE[k]
                 own = carried[:, table.columns[k]]
-                result[:, k] = joint.factor(*own.T, *(getattr(loads, name) for name in joint.loads))
+                result[:, k] = joint.factor(*own.T, *(loads[name] for name in joint.loads))
     return np.minimum(result, MOST_FACTOR)
 
 
@@ -185,9 +185,7 @@ def joint_factors(design: Design, maps: Maps, loads: Loads) -> tuple[JointFactor
     if not all(known[k] or joint.informs for k, joint in enumerate(TABLE)):
         return ()
     return tuple(
-        JointFactor(
-            joint=joint, factor=float(factor), loads={name: float(getattr(loads, name)[0]) for name in joint.loads}
-        )
+        JointFactor(joint=joint, factor=float(factor), loads={name: float(loads[name][0]) for name in joint.loads})
         for joint, factor, is_known in zip(TABLE, factors, known, strict=True)
         if is_known
     )
@@ -222,7 +220,7 @@ def gear_life(design: Design, maps: Maps, loads: Loads) -> GearLife | None:
     """Return the life of a design's gears under strikes; None if its jump failed or its rules know no fatigue."""
     both = joint_maps(maps)
     leg, settings = leg_dimensions(both), both.hip.settings
-    torques = {side: float(getattr(loads, f"peak_gear_torque_{side}_n_m")[0]) for side in SIDES}
+    torques = {side: float(loads[f"peak_gear_torque_{side}_n_m"][0]) for side in SIDES}
     if settings.rules == "paper" or np.isnan(list(torques.values())).any():
         return None
     jumps = min(

@@ -3,46 +3,28 @@ required.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.design import LENGTHS
 from pareto_monoped.geometry.shapes import Floats
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.strength.groups import INFORMING, Group
 
+Loads = Mapping[str, Floats]
+"""Loads of n jumps, each of shape (n,), by ``LOAD_NAMES``; NaN where unknown.
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Loads:
-    """Loads of n jumps, each of shape (n,), as in ``measures.MEASURES``; NaN where unknown.
-
-    The end stops and the foot's impact are in the torque through a gearbox; a housing reacts to no more than that.
-    """
-
-    peak_torque_hip_n_m: Floats
-    peak_torque_knee_n_m: Floats
-    peak_gear_torque_hip_n_m: Floats
-    peak_gear_torque_knee_n_m: Floats
-    peak_chain_tension_n: Floats
-    peak_stop_torque_hip_n_m: Floats
-    peak_stop_torque_knee_n_m: Floats
-    stop_compression_hip: Floats
-    stop_compression_knee: Floats
-    stop_energy_j: Floats
-    peak_foot_force_n: Floats
-    peak_knee_force_n: Floats
-    thigh_length_m: Floats
-    shank_length_m: Floats
-
-    def __len__(self) -> int:
-        return len(self.thigh_length_m)
-
-
-LOAD_NAMES: tuple[str, ...] = tuple(field.name for field in fields(Loads))
-"""Names that a row of the table may read."""
+The end stops and the foot's impact are in the torque through a gearbox; a housing reacts to no more than that."""
+_OF_SIDES = ("peak_torque_{}_n_m", "peak_gear_torque_{}_n_m", "peak_stop_torque_{}_n_m", "stop_compression_{}")
+LOAD_NAMES: tuple[str, ...] = (
+    *(name.format(side) for name in _OF_SIDES for side in ("hip", "knee")),
+    *("peak_chain_tension_n", "stop_energy_j", "peak_foot_force_n", "peak_knee_force_n", *LENGTHS),
+)
+"""Names that a row of the table may read: measures of the jump, and the lengths of the links."""
 
 
 def loads_of(columns: Mapping[str, Any]) -> Loads:
@@ -54,7 +36,7 @@ def loads_of(columns: Mapping[str, Any]) -> Loads:
     """
     n = len(columns["thigh_length_m"])
     unknown = np.full(n, np.nan)
-    return Loads(**{name: np.asarray(columns.get(name, unknown), dtype=np.float64) for name in LOAD_NAMES})
+    return {name: np.asarray(columns.get(name, unknown), dtype=np.float64) for name in LOAD_NAMES}
 
 
 Side = Literal["hip", "knee"]
@@ -127,3 +109,26 @@ class ActuatorJoint(Joint):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LegJoint(Joint):
     """A row whose capacity is the same for all robots of an actuator map."""
+
+
+def link_row(source: str, required: float, why: str) -> Callable[..., LegJoint]:
+    """Return what makes rows of the links with one source and one required factor."""
+
+    def row(
+        name: str, formula: str, loads: tuple[str, ...], capacity: Any, factor: Any, parts: tuple[str, ...]
+    ) -> LegJoint:
+        return LegJoint(
+            name=name,
+            group="links",
+            formula=formula,
+            source=source,
+            required=required,
+            required_source=why,
+            loads=loads,
+            capacity=capacity,
+            factor=factor,
+            parts=parts,
+            cure="release the knee's torque before its stop, or jump lower",
+        )
+
+    return row

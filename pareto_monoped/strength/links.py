@@ -22,7 +22,7 @@ from pareto_monoped.leg.shank import bridges_of as shank_bridges
 from pareto_monoped.leg.shank import shank_parts
 from pareto_monoped.leg.thigh import bridges_of as thigh_bridges
 from pareto_monoped.leg.thigh import thigh_parts
-from pareto_monoped.strength.joint import LegJoint, Structure
+from pareto_monoped.strength.joint import Structure, link_row
 
 REQUIRED = 1.2
 _REASON = (
@@ -117,22 +117,7 @@ def _shank_plate(
     return limit / side_stress_mpa(moment, 0.5 * knee, 0.5 * knee, clear, (half, window, thick))
 
 
-def _row(
-    name: str, formula: str, loads: tuple[str, ...], capacity: Any, factor: Any, parts: tuple[str, ...]
-) -> LegJoint:
-    return LegJoint(
-        name=name,
-        group="links",
-        formula=formula,
-        source=_SOURCE,
-        required=REQUIRED,
-        required_source=_REASON,
-        loads=loads,
-        capacity=capacity,
-        factor=factor,
-        parts=parts,
-        cure="release the knee's torque before its stop, or jump lower",
-    )
+_row = link_row(_SOURCE, REQUIRED, _REASON)
 
 
 _SIDE = "yield / (M / Z + N / A + V h / 4 / Z_side)"

@@ -129,10 +129,9 @@ def _pressed(dowel: Dowel, wall_mm: float, stress_mpa: float) -> float:
     return fit.elastic_limit_mpa(stress_mpa) / fit.pressure_mpa(most)
 
 
-_Capacity = Callable[[Structure], tuple[float, float]]
-
-
-def _dowel_row(name: str, side: Side, force: str, capacity: _Capacity, parts: tuple[str, ...]) -> LegJoint:
+def _dowel_row(
+    name: str, side: Side, force: str, capacity: Callable[[Structure], tuple[float, float]], parts: tuple[str, ...]
+) -> LegJoint:
     """Return a circle of dowels between an actuator and a link, under its gearbox's torque and a force across it."""
     return LegJoint(
         name=name,

@@ -17,17 +17,12 @@ from pareto_monoped.leg.shank import bridges_of as shank_bridges
 from pareto_monoped.leg.thigh import inner_hip_holes, outer_hip_holes
 from pareto_monoped.materials import ALLOYS, MATERIALS
 from pareto_monoped.strength.connections import MISES
-from pareto_monoped.strength.joint import LegJoint, Structure, over
+from pareto_monoped.strength.joint import Structure, link_row, over
 
 PLATE = ALLOYS["aw_6082_t6"]
 """Of all plates of the links."""
 CORE_MPA = 2000.0
 """Young's modulus of printed PETG; makers' data sheets: 2.0 to 2.2 GPa in the plane of the layers."""
-_STRENGTH = 1.2
-_STRENGTH_REASON = "our own choice against yield, as beside the windows: see strength.links"
-_BUCKLING = 1.5
-_BUCKLING_REASON = "our own choice: columns are never quite straight; EN 1999-1-1 has 1.1 on top of its imperfections"
-_CURE = "release the knee's torque before its stop, or jump lower"
 
 
 def sunk_width_mm(screw: Screw, thickness_mm: float) -> float:
@@ -173,50 +168,40 @@ def _fork_side(limit: Any, half: Any, window: Any, thick: Any, *loads: Any) -> A
     return limit / pressed_mpa(0.5 * np.maximum(gear, knee * length), 0.5 * knee, half, window, thick)
 
 
-def _row(
-    name: str, formula: str, loads: tuple[str, ...], capacity: Any, factor: Any, parts: tuple[str, ...], *, column: bool
-) -> LegJoint:
-    return LegJoint(
-        name=name,
-        group="links",
-        formula=formula,
-        source="Johnson's parabola and Euler: Roark, chapter 15; foundation: Hetenyi" if column else _SECTION,
-        required=_BUCKLING if column else _STRENGTH,
-        required_source=_BUCKLING_REASON if column else _STRENGTH_REASON,
-        loads=loads,
-        capacity=capacity,
-        factor=factor,
-        parts=parts,
-        cure=_CURE,
-    )
-
-
-_SECTION = "elastic net sections, see strength.plates; yield of the plates' alloy from the materials"
+_section = link_row(
+    "elastic net sections, see strength.plates; yield of the plates' alloy from the materials",
+    1.2,
+    "our own choice against yield, as beside the windows: see strength.links",
+)
+_column = link_row(
+    "Johnson's parabola and Euler: Roark, chapter 15; foundation: Hetenyi",
+    1.5,
+    "our own choice: columns are never quite straight; EN 1999-1-1 has 1.1 on top of its imperfections",
+)
 _BENT = ("peak_stop_torque_knee_n_m", "peak_chain_tension_n", "peak_knee_force_n")
 _KNEE = ("peak_knee_force_n", "shank_length_m")
 _SHANK = ("shank_plate_near", "shank_plate_far")
 JOINTS = (
     *(
-        _row(f"thigh_hub_{plate}",
+        _section(f"thigh_hub_{plate}",
             "least of tau_y t (2 pi r - sum d) r and n r F_neck over the circles of holes, over T",
-            (f"peak_gear_torque_{side}_n_m",), capacity, over, (f"thigh_plate_{plate}",), column=False)
+            (f"peak_gear_torque_{side}_n_m",), capacity, over, (f"thigh_plate_{plate}",))
         for plate, side, capacity in (("inner", "hip", inner_hub), ("outer", "knee", outer_hub))
     ),
     *(
         row
         for plate, side in (("inner", "hip"), ("outer", "knee"))
         for row in (
-            _row(f"thigh_bridge_{plate}",
+            _section(f"thigh_bridge_{plate}",
                 f"yield / (M / Z_net + N / A_net); M = max(T_{side}, T_stop / 2), N = (F_chain + F_knee) / 2",
-                (f"peak_gear_torque_{side}_n_m", *_BENT), _thigh_net, _thigh_bridge, (f"thigh_plate_{plate}",),
-                column=False),
-            _row(f"thigh_side_{plate}", "sigma_c A_side / (M / s + N / 2), on the core; M and N as of thigh_bridge",
+                (f"peak_gear_torque_{side}_n_m", *_BENT), _thigh_net, _thigh_bridge, (f"thigh_plate_{plate}",)),
+            _column(f"thigh_side_{plate}", "sigma_c A_side / (M / s + N / 2), on the core; M and N as of thigh_bridge",
                 (f"peak_gear_torque_{side}_n_m", *_BENT), _thigh_column, _thigh_side,
-                (f"thigh_plate_{plate}", "thigh_core"), column=True),
+                (f"thigh_plate_{plate}", "thigh_core")),
         )
     ),
-    _row("shank_bridge", "yield / (M / Z_net + N / A_net); M = F_knee (l - a) / 2, N = F_knee / 2", _KNEE, _shank_net,
-        _shank_bridge, _SHANK, column=False),
-    _row("shank_fork_side", "sigma_c A_side / (M / s + N / 2), free; M = max(T_knee, F_knee l) / 2, N = F_knee / 2",
-        ("peak_gear_torque_knee_n_m", *_KNEE), _fork_column, _fork_side, _SHANK, column=True),
+    _section("shank_bridge", "yield / (M / Z_net + N / A_net); M = F_knee (l - a) / 2, N = F_knee / 2", _KNEE,
+        _shank_net, _shank_bridge, _SHANK),
+    _column("shank_fork_side", "sigma_c A_side / (M / s + N / 2), free; M = max(T_knee, F_knee l) / 2, N = F_knee / 2",
+        ("peak_gear_torque_knee_n_m", *_KNEE), _fork_column, _fork_side, _SHANK),
 )  # fmt: skip

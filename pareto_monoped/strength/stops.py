@@ -29,11 +29,6 @@ RUBBER_FRICTION = 0.8
 """Of dry rubber on metal (handbooks: 0.5 to 0.8)."""
 
 
-def edges_n(plates_mm: float, face_mm: float, yield_mpa: float) -> float:
-    """Return the force at which the wings of a seat press the edges of the plates to their yield stress."""
-    return plates_mm * face_mm * yield_mpa
-
-
 def trapezium_mm(broad_mm: float, narrow_mm: float, straight_mm: float, depth_mm: float) -> float:
     """Return the mean width of a section that is ``broad_mm`` wide to a depth and then tapers to ``narrow_mm``."""
     return (broad_mm * straight_mm + 0.5 * (broad_mm + narrow_mm) * (depth_mm - straight_mm)) / depth_mm
@@ -42,11 +37,6 @@ def trapezium_mm(broad_mm: float, narrow_mm: float, straight_mm: float, depth_mm
 def beam_n(span_mm: float, width_mm: float, depth_mm: float, yield_mpa: float) -> float:
     """Return the even load at which a beam on two supports yields: M = F l / 8, Z = b h^2 / 6."""
     return 8.0 / span_mm * width_mm * depth_mm**2 / 6.0 * yield_mpa
-
-
-def bolt_bearing_n(diameter_mm: float, plates_mm: float, yield_mpa: float) -> float:
-    """Return the force at which one bolt presses its holes to the yield stress, if it carries all."""
-    return diameter_mm * plates_mm * yield_mpa
 
 
 def cantilever_n(arm_mm: float, thick_mm: float, high_mm: float, yield_mpa: float) -> float:
@@ -87,7 +77,7 @@ def _torque_n_m(stop: JointStop, force_n: float) -> float:
 def on_edges(side: Side, s: Structure) -> float:
     """Return the limit of the seat or striker that stands on the edges of the thigh's plates."""
     stop = _stop(side, s.leg)
-    return _torque_n_m(stop, edges_n(_PLATES * s.leg.plate_mm, 2.0 * stop.half_face_mm, ALLOY.yield_mpa))
+    return _torque_n_m(stop, _PLATES * s.leg.plate_mm * (2.0 * stop.half_face_mm) * ALLOY.yield_mpa)
 
 
 def foot(side: Side, s: Structure) -> float:
@@ -113,7 +103,7 @@ def striker(s: Structure) -> float:
 def striker_bolt(s: Structure) -> float:
     """Return the limit of the bolt of that head in the shank's plates."""
     plates = _PLATES * s.leg.shank_plate_mm
-    return _torque_n_m(knee_stop(s.leg), bolt_bearing_n(2.0 * sleeve_hole(M4), plates, ALLOY.yield_mpa))
+    return _torque_n_m(knee_stop(s.leg), 2.0 * sleeve_hole(M4) * plates * ALLOY.yield_mpa)
 
 
 def rods(s: Structure) -> float:

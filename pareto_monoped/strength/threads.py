@@ -14,7 +14,6 @@ from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import SCREWS, Role
 from pareto_monoped.geometry.screws import HEXAGON_FLATS_MM
 from pareto_monoped.geometry.shapes import Circle, Pattern
-from pareto_monoped.geometry.tightening import Fastening
 from pareto_monoped.leg.base import base_parts
 from pareto_monoped.leg.journal import journal_parts
 from pareto_monoped.leg.shank import shank_parts
@@ -118,14 +117,10 @@ def leg_threads(s: Structure) -> float:
     units = (thigh_parts(_ANY_LENGTH_M, s.leg), shank_parts(_ANY_LENGTH_M, s.leg), base_parts(_ANY_ACTUATOR_M, s.leg))
     through = (part for unit in units for part in unit if part.role is Role.BOLT)
     bolts = [fastening(part) for part in through if fastening(part).head == "cap"]
-    seats = [seat for bolt in bolts for seat in (bolt, on_nut(bolt))]
-    under = [head_force_n(seat, _SEAT_MPA) / seat.preload_n for seat in seats]
+    # A nut bears like a hexagon head of its size.
+    nuts = [replace(bolt, head="hexagon", head_mm=HEXAGON_FLATS_MM[bolt.thread.diameter_mm]) for bolt in bolts]
+    under = [head_force_n(seat, _SEAT_MPA) / seat.preload_n for seat in (*bolts, *nuts)]
     return min(*(least_tightened(unit, _SEAT_MPA) for unit in units), *under)
-
-
-def on_nut(bolt: Fastening) -> Fastening:
-    """Return a bolt seen from its nut, which bears like a hexagon head of its size."""
-    return replace(bolt, head="hexagon", head_mm=HEXAGON_FLATS_MM[bolt.thread.diameter_mm])
 
 
 def journal_threads(s: Structure) -> float:

@@ -95,7 +95,8 @@ def called(function: OwnFunction, table: Jumps, failed: NDArray[np.bool_]) -> Fl
     except StudyError as error:
         raise StudyError(f"{source}: {error}") from error
     except Exception as error:
-        raise StudyError(f"{source}: {_one_line(error)}; {_cure(error, table, n)}") from error
+        words = re.sub(r"\s+", " ", f"{type(error).__name__}: {error}")
+        raise StudyError(f"{source}: {words}; {_cure(error, table, n)}") from error
     if _has_truth(given):
         raise StudyError(f"{source} = bool: must return numbers; a constraint holds where its value is <= 0")
     if values.shape != (n,):
@@ -203,10 +204,6 @@ def refuse_other_functions(trials: pd.DataFrame, functions: Functions, source: s
 
 def _listed(names: Sequence[str]) -> str:
     return ", ".join(name.removeprefix(OWN) for name in names) or "none"
-
-
-def _one_line(error: Exception) -> str:
-    return re.sub(r"\s+", " ", f"{type(error).__name__}: {error}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -68,7 +68,7 @@ def test_internal_gear_is_its_drawing_with_rounded_roots(teeth, backlash, shift)
 
 
 def test_tooth_thickness_on_the_pitch_circle_is_half_the_pitch_less_the_backlash():
-    psi = half_angle(radius_mm=9.0, teeth=36, module_mm=0.5, thinning_mm=0.04, pressure_angle_rad=ALPHA)
+    psi = half_angle(ExternalGear(teeth=36, module_mm=0.5), 9.0, 0.04)
     assert 2.0 * 9.0 * psi == pytest.approx(np.pi * 0.5 / 2.0 - 0.04, rel=1e-12)
 
 

@@ -34,7 +34,7 @@ def factors_one_by_one(actuator_map, design, loads, i):
     for joint in TABLE:
         side = joint.side if isinstance(joint, ActuatorJoint) else "hip"
         carried = joint.capacity(structure(actuator_map, float(design[NAMES.index(f"{side}_ratio")])))
-        acting = [float(getattr(loads, name)[i]) for name in joint.loads]
+        acting = [float(loads[name][i]) for name in joint.loads]
         with np.errstate(divide="ignore"):
             value = joint.factor(*map(np.float64, np.atleast_1d(carried)), *map(np.float64, acting))
         found[joint.name] = float(np.minimum(value, 1000.0))

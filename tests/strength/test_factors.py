@@ -9,7 +9,7 @@ from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.measures import MEASURES
 from pareto_monoped.strength.factors import MOST_FACTOR, TABLE, safeties, strength_factors
 from pareto_monoped.strength.groups import GROUP_MEASURES, INFORMING
-from pareto_monoped.strength.joint import LOAD_NAMES, Loads, loads_of
+from pareto_monoped.strength.joint import LOAD_NAMES, loads_of
 from tests.strength.support import factors_one_by_one, jumped
 
 
@@ -35,7 +35,7 @@ def test_a_design_does_not_depend_on_the_batch():
     actuator_map, designs, _, loads = jumped()
     whole = strength_factors(designs, actuator_map, loads)
     order = np.random.default_rng(3).permutation(len(designs))
-    turned = Loads(**{name: getattr(loads, name)[order] for name in LOAD_NAMES})
+    turned = {name: loads[name][order] for name in LOAD_NAMES}
     np.testing.assert_array_equal(strength_factors(designs[order], actuator_map, turned), whole[order])
 
 
@@ -46,20 +46,18 @@ def test_more_load_is_less_safety():
     lengths = ("thigh_length_m", "shank_length_m")
     for name in LOAD_NAMES:
         if name not in lengths:
-            more = Loads(**{each: getattr(loads, each) * (10.0 if each == name else 1.0) for each in LOAD_NAMES})
+            more = {each: loads[each] * (10.0 if each == name else 1.0) for each in LOAD_NAMES}
             after = strength_factors(designs, actuator_map, more)
             assert np.all(after <= before * (1.0 + 1e-12)), name
             for k, joint in enumerate(TABLE):
                 if name in joint.loads:
-                    loaded = (before[:, k] < MOST_FACTOR) & (getattr(loads, name) > 0.0)
+                    loaded = (before[:, k] < MOST_FACTOR) & (loads[name] > 0.0)
                     assert not loaded.any() or np.any(after[loaded, k] < before[loaded, k]), (joint.name, name)
 
 
 def test_a_joint_without_load_has_a_finite_factor_and_an_unknown_load_none():
     actuator_map, designs, _, loads = jumped()
-    idle = Loads(
-        **{name: np.zeros(len(loads)) if "length" not in name else getattr(loads, name) for name in LOAD_NAMES}
-    )
+    idle = {name: values if "length" in name else np.zeros_like(values) for name, values in loads.items()}
     factors = strength_factors(designs, actuator_map, idle)
     # Threads under their preload and dowels in their holes have no load of the jump.
     loaded = np.array([bool(joint.loads) for joint in TABLE])

@@ -52,39 +52,31 @@ def build_stage(gears: GearSet, motor: Motor, family: Family, settings: Actuator
     outer, inner = contact_ratios(gears)
     sun_rim, planet_rim, ring_rim = _rim_factors(gears, family, settings)
     sun_passes, planet_passes, ring_passes = passes_per_rad(gears)
+    member = partial(_member, settings=settings)
+    sun = partial(member, gear="sun", steel=steels.sun, rim_factor=sun_rim, passes=sun_passes)
     planet = partial(
-        _member,
-        gear="planet",
-        steel=steels.planet,
-        rim_factor=planet_rim,
-        passes=planet_passes,
-        idler=True,
-        settings=settings,
+        member, gear="planet", steel=steels.planet, rim_factor=planet_rim, passes=planet_passes, idler=True
     )
-    meshed = partial(
-        _mesh, module_mm=gears.module_mm, force_n=force_n, sharing=load_sharing(gears.planets, settings), speed=speed
-    )
+    ring = partial(member, gear="ring", steel=steels.ring, rim_factor=ring_rim, passes=ring_passes)
+    sharing = load_sharing(gears.planets, settings)
+    meshed = partial(_mesh, module_mm=gears.module_mm, force_n=force_n, sharing=sharing, speed=speed, settings=settings)
     # Without the limit, twice as wide is far enough to see what it keeps out.
     reach = 2.0 if "face_width" in settings.constraints_off else 1.0
     sun_mesh = meshed(
-        pinion=partial(_member, gear="sun", steel=steels.sun, rim_factor=sun_rim, passes=sun_passes, settings=settings),
+        pinion=sun,
         wheel=planet,
         steels=(steels.sun, steels.planet),
         pair=(gears.sun(), gears.planet()),
         working_angle_rad=gears.working_angle_rad,
         contact_ratio=outer,
-        settings=settings,
     )
     ring_mesh = meshed(
         pinion=planet,
-        wheel=partial(
-            _member, gear="ring", steel=steels.ring, rim_factor=ring_rim, passes=ring_passes, settings=settings
-        ),
+        wheel=ring,
         steels=(steels.planet, steels.ring),
         pair=(gears.planet(), gears.ring()),
         working_angle_rad=gears.ring_working_angle_rad,
         contact_ratio=inner,
-        settings=settings,
     )
     return Stage(
         gears=gears,

@@ -186,14 +186,9 @@ def main_bearing_depth_mm(at: Layout) -> Numbers:
     return -0.5 * (at.z_bearing_front + at.z_bearing_back)
 
 
-def chain_pull_n(output_torque_n_m: Numbers, service: ServiceData) -> Numbers:
-    """Return the pull of the chain at a torque of the knee's output."""
-    return output_torque_n_m / (1e-3 * service.chain_radius_mm)
-
-
 def knee_forces_n(output_torque_n_m: Numbers, at: Layout, service: ServiceData) -> tuple[Numbers, Numbers]:
     """Return the radial forces on main and far bearing; the chain pulls between them, and both are pivots."""
-    pull = chain_pull_n(output_torque_n_m, service)
+    pull = output_torque_n_m / (1e-3 * service.chain_radius_mm)
     near, far = service.chain_offset_mm + main_bearing_depth_mm(at), service.drive_support_mm
     return pull * far / (near + far), pull * near / (near + far)
 

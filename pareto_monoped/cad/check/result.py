@@ -114,15 +114,7 @@ def worst_of(limit: Limit, looked_at: str, findings: Iterable[Finding]) -> Check
 
 def count_of(limit: Limit, looked_at: str, failures: Sequence[str]) -> Check:
     """Return a check of things that are right or wrong: the measured value is the number of the wrong ones."""
-    wrong = float(len(failures))
-    return Check(
-        name=limit.name,
-        looked_at=looked_at,
-        measured=wrong,
-        limit=limit.value,
-        unit=limit.unit,
-        failures=tuple(failures),
-    )
+    return replace(worst_of(limit, looked_at, ()), measured=float(len(failures)), failures=tuple(failures))
 
 
 def _number(value: float) -> str:

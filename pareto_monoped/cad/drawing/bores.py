@@ -110,7 +110,10 @@ def bores(part: Part, *, on_axis: bool = False) -> tuple[Bore, ...]:
     found: dict[Circle | Pattern, list[tuple[float, float]]] = {}
     for prism in sorted(part.prisms, key=lambda p: float(p.z0_mm)):
         for hole in prism.holes:
-            if not isinstance(hole, Circle | Pattern) or (not on_axis and _central(hole)):
+            if not isinstance(hole, Circle | Pattern):
+                continue
+            centred = max(abs(float(hole.x_mm)), abs(float(hole.y_mm))) < _SAME_MM
+            if isinstance(hole, Circle) and centred and not on_axis:
                 continue
             spans = found.setdefault(hole, [])
             low, high = float(prism.z0_mm), float(prism.z1_mm)
@@ -139,10 +142,6 @@ def number(value: float) -> str:
     """Return a length or angle as it is written on a drawing: to a micrometre, without useless zeros."""
     text = f"{value:.3f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
-
-
-def _central(shape: Circle | Pattern) -> bool:
-    return isinstance(shape, Circle) and abs(float(shape.x_mm)) < _SAME_MM and abs(float(shape.y_mm)) < _SAME_MM
 
 
 def _feature(part: Part, shape: Circle | Pattern, low: float, high: float) -> Hole | None:

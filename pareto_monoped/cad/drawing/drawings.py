@@ -156,12 +156,9 @@ def assembly_drawing(product: Product, origin: Origin) -> bytes:
         name="monoped",
         number=f"{origin.digest}-00",
         material="see the list of items",
-        hardness="",
         mass=_mass(product.robot.mass_kg),
         count=1,
         process="assembled",
-        tolerances="",
-        finish="",
         **asdict(origin),
     )
     return _file([assembly_sheet(product), *exploded_sheets(product), cable_sheet(product)], title)

@@ -40,12 +40,12 @@ class Title:
     name: str  #: of the part, in words
     number: str  #: of the drawing
     material: str  #: with condition
-    hardness: str
+    hardness: str = ""
     mass: str  #: of one, with its unit
     count: int  #: how many the robot has
     process: str  #: how it is made
-    tolerances: str  #: general ones
-    finish: str  #: arithmetical mean height Ra in micrometres of all faces without another; '' for none
+    tolerances: str = ""  #: general ones
+    finish: str = ""  #: arithmetical mean height Ra in micrometres of all faces without another; '' for none
     design: str  #: which robot
     digest: str  #: hash of the design
     date: str  #: of the design; '' if nothing tells it

@@ -36,14 +36,11 @@ since there are half a million lasting objects, and found next to nothing (our o
 class SolidFacts:
     """What the kernel finds about a part's solid, in the part's own frame."""
 
-    valid: bool
-    """Whether it passes the kernel's own check of topology and geometry."""
-    bodies: int
-    """Of how many separate bodies it is."""
+    valid: bool  #: whether it passes the kernel's own check of topology and geometry
+    bodies: int  #: of how many separate bodies it is
     volume_mm3: float
     centre_mm: Floats
-    inertia_mm5: Floats
-    """Volume integrals of the inertia tensor about the centre, shape (3, 3)."""
+    inertia_mm5: Floats  #: volume integrals of the inertia tensor about the centre, shape (3, 3)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -224,7 +224,9 @@ def _united(prisms: Sequence[Prism], balls: Sequence[Ball], bevels: Sequence[Bev
     pieces = [_extruded(prism, tolerance_mm) for prism in prisms] + [_ball(ball, tolerance_mm) for ball in balls]
     mesh = mesh_from(m3.Manifold.batch_boolean(pieces, m3.OpType.Add))
     if any(has_cone(bevel) for bevel in bevels):
-        mesh = _mesh_of(*beveled(mesh.points_mm, mesh.triangles, bevels))
+        points, triangles = beveled(mesh.points_mm, mesh.triangles, bevels)
+        body = m3.Manifold(m3.Mesh64(points, triangles.astype(np.uint64)))
+        mesh = Mesh(points_mm=points, triangles=triangles, body=body)
     return _welded(mesh)
 
 
@@ -268,12 +270,6 @@ def mesh_from(body: m3.Manifold) -> Mesh:
         points_mm=np.asarray(raw.vert_properties)[:, :3].astype(np.float64),
         triangles=np.asarray(raw.tri_verts).astype(np.int64),
         body=body,
-    )
-
-
-def _mesh_of(points_mm: Points, triangles: Triangles) -> Mesh:
-    return Mesh(
-        points_mm=points_mm, triangles=triangles, body=m3.Manifold(m3.Mesh64(points_mm, triangles.astype(np.uint64)))
     )
 
 

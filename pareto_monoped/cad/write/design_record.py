@@ -21,13 +21,12 @@ def design_record(
     searched: Design,
     built: Built,
     maps: JointMaps,
-    jumps: Mapping[str, Mapping[str, Any]],
     calibration: Calibration,
     source: Mapping[str, Any] | None,
     formats: Sequence[str],
     strength: bool,
 ) -> dict[str, Any]:
-    """Return the content of ``design.json``, apart from the list of files."""
+    """Return the content of ``design.json`` before its jumps are simulated, apart from the list of files."""
     rules, values = maps.rules, [motor_values(motor) for motor in maps.motors]
     # Records with one motor hold it alone, as they did before there could be two.
     motor_data = values[0] if len(values) == 1 else dict(zip(("hip", "knee"), values, strict=True))
@@ -41,7 +40,7 @@ def design_record(
         "searched": searched.as_dict(),
         "design_hash": digest({"searched": searched.as_dict(), "rules": rules, "motor": motor_data})[:_DIGITS],
         "as_built": built.design.as_dict(),
-        "jumps": {name: dict(jump) for name, jump in jumps.items()},
+        "jumps": {},
         "mass_kg": built.robot.mass_kg,
         "strength": strength,
         "pose": {"hip_rad": built.pose.hip_rad, "knee_rad": built.pose.knee_rad},

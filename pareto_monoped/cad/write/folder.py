@@ -4,6 +4,8 @@ A file is foreign unless the record of an earlier export lists it, under a name 
 not break off the folder's move into place, and temporary folders are deleted.
 """
 
+import csv
+import io
 import re
 import secrets
 import shutil
@@ -175,6 +177,13 @@ def write(folder: Path, name: str, content: str | bytes) -> None:
         path.write_text(content, encoding="utf-8", newline="\n")
     else:
         path.write_bytes(content)
+
+
+def csv_text(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """Return a table as CSV."""
+    stream = io.StringIO()
+    csv.writer(stream, lineterminator="\n").writerows((columns, *rows))
+    return stream.getvalue()
 
 
 def files_in(folder: Path) -> list[str]:

@@ -5,8 +5,6 @@ quotation marks, then the value with its unit (SolidWorks help, "Creating Equati
 for a file name other than ``equations.txt``). Many other CAD programs read such lines or the CSV.
 """
 
-import csv
-import io
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -14,6 +12,7 @@ import numpy as np
 
 from pareto_monoped.cad.assembly import ACTUATOR_UNITS
 from pareto_monoped.cad.product import Product, UniquePart
+from pareto_monoped.cad.write.folder import csv_text
 from pareto_monoped.geometry.features import CountersunkHead, Hole, ShaftEnd
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Pattern, Shape
@@ -83,11 +82,7 @@ def parameters(product: Product, leg: LegDimensions) -> tuple[Parameter, ...]:
 
 def parameters_csv(rows: Iterable[Parameter]) -> str:
     """Return the text of ``parameters.csv``."""
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(_COLUMNS)
-    writer.writerows((row.name, row.text, row.unit, row.part, row.meaning) for row in rows)
-    return stream.getvalue()
+    return csv_text(_COLUMNS, ((row.name, row.text, row.unit, row.part, row.meaning) for row in rows))
 
 
 def equations(rows: Iterable[Parameter]) -> str:

@@ -3,8 +3,6 @@
 What is bought: ``hardware.csv``, one row per designation, the torques of screws, and ``cables.csv``.
 """
 
-import csv
-import io
 import json
 import re
 from collections import defaultdict
@@ -17,6 +15,7 @@ from pareto_monoped.cad.assembly import ACTUATOR_UNITS
 from pareto_monoped.cad.cables import TIE, TIE_DESIGNATION, Cable, cables
 from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.product import Listed, Product, part_file_name
+from pareto_monoped.cad.write.folder import csv_text
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import FASTENERS, Role
 from pareto_monoped.geometry.tightening import LOCKER
@@ -36,13 +35,11 @@ _JOINT_COLUMNS = (
 def parts_list(product: Product, factors: Sequence[JointFactor] = ()) -> str:
     """Return the parts list as CSV, one row per unique part, with the safety factors of the joints that it is in."""
     joints = _by_part(factors)
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(_PART_COLUMNS)
+    rows: list[tuple[object, ...]] = []
     for unique in product.unique:
         part = unique.part
         mass_g = 1e3 * float(part.unit_mass_kg())
-        writer.writerow(
+        rows.append(
             (
                 unique.name,
                 unique.count,
@@ -59,7 +56,7 @@ def parts_list(product: Product, factors: Sequence[JointFactor] = ()) -> str:
                 _note(part),
             )
         )
-    return stream.getvalue()
+    return csv_text(_PART_COLUMNS, rows)
 
 
 def _by_part(factors: Sequence[JointFactor]) -> dict[str, list[str]]:
@@ -93,12 +90,10 @@ def _note(part: Part) -> str:
 
 def strength_table(factors: Sequence[JointFactor]) -> str:
     """Return the table as CSV, a row per joint; without rows if the design does not jump."""
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(_JOINT_COLUMNS)
+    rows: list[tuple[object, ...]] = []
     for one in factors:
         joint = one.joint
-        writer.writerow(
+        rows.append(
             (
                 joint.name,
                 joint.group,
@@ -115,22 +110,16 @@ def strength_table(factors: Sequence[JointFactor]) -> str:
                 joint.cure,
             )
         )
-    return stream.getvalue()
+    return csv_text(_JOINT_COLUMNS, rows)
+
+
+_OF_CHECK = ("passed", "looked_at", "worst", "measured", "limit", "unit")
 
 
 def checks_record(checks: Sequence[Check]) -> str:
     """Return the checks as JSON, in the order in which they ran."""
     rows = [
-        {
-            "check": check.name,
-            "passed": check.passed,
-            "looked_at": check.looked_at,
-            "worst": check.worst,
-            "measured": check.measured,
-            "limit": check.limit,
-            "unit": check.unit,
-            "failures": list(check.failures),
-        }
+        {"check": check.name, **{name: getattr(check, name) for name in _OF_CHECK}, "failures": list(check.failures)}
         for check in checks
     ]
     return json.dumps(rows, indent=2) + "\n"
@@ -139,18 +128,8 @@ def checks_record(checks: Sequence[Check]) -> str:
 _STANDARD = re.compile(r"(?:ISO|DIN)(?:/[A-Z]+)? \d+(?:-\d+)?")
 _COLUMNS = ("kind", "designation", "standard", "count", "used_for", "remark")
 _CABLE_COLUMNS = (
-    *(
-        "cable",
-        "from",
-        "to",
-        "wires",
-        "designation",
-        "diameter_mm",
-        "bend_radius_mm",
-        "least_bend_radius_mm",
-        "path_mm",
-    ),
-    *("cut_mm", "mass_not_counted_g", "corner", "x_mm", "y_mm", "z_mm", "what", "warning"),
+    *("cable", "from", "to", "wires", "designation", "diameter_mm", "bend_radius_mm", "least_bend_radius_mm"),
+    *("path_mm", "cut_mm", "mass_not_counted_g", "corner", "x_mm", "y_mm", "z_mm", "what", "warning"),
 )
 _BOUGHT_ROUGH = frozenset({Role.SPROCKET})
 """Parts that are bought and then worked on, if their designation is that of a standard."""
@@ -198,22 +177,20 @@ def by_designation(product: Listed) -> dict[str, list[Cable]]:
 
 def hardware(product: Listed) -> str:
     """Return the purchasing list as CSV."""
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(_COLUMNS)
+    rows: list[tuple[object, ...]] = []
     for item in items(product):
         parts, remarks = " ".join(item.parts), "; ".join(item.remarks)
-        writer.writerow((item.kind, item.designation, item.standard, item.count, parts, remarks))
+        rows.append((item.kind, item.designation, item.standard, item.count, parts, remarks))
     for designation, made in by_designation(product).items():
         lengths = ", ".join(f"{c.name} {c.wires} x {c.cut_mm:g} mm" for c in made)
         total_m = 1e-3 * sum(c.wires * c.cut_mm for c in made)
         names = " ".join(c.name for c in made)
-        writer.writerow(("cable", designation, "", sum(c.wires for c in made), names, f"{lengths}; {total_m:.2f} m"))
+        rows.append(("cable", designation, "", sum(c.wires for c in made), names, f"{lengths}; {total_m:.2f} m"))
     ties = sum(cable.notes.count(TIE) for made in by_designation(product).values() for cable in made)
-    writer.writerow(("cable", TIE_DESIGNATION, "", ties, "driver plates", ""))
+    rows.append(("cable", TIE_DESIGNATION, "", ties, "driver plates", ""))
     locked = sum(unique.count for unique in product.unique if unique.part.role in FASTENERS)
-    writer.writerow(("consumable", LOCKER, "", 1, f"{locked} screws and bolts", "10 ml"))
-    return stream.getvalue()
+    rows.append(("consumable", LOCKER, "", 1, f"{locked} screws and bolts", "10 ml"))
+    return csv_text(_COLUMNS, rows)
 
 
 def tightening(part: Part) -> tuple[str, str]:
@@ -236,13 +213,11 @@ def _split(part: Part) -> tuple[str, str]:
 
 def cables_csv(product: Listed) -> str:
     """Return every corner of every cable in the assembly's frame as CSV, with the thigh hanging down."""
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(_CABLE_COLUMNS)
+    rows: list[tuple[object, ...]] = []
     for cable in cables(product.robot):
         head = (cable.name, cable.start, cable.end, cable.wires, cable.designation, f"{cable.diameter_mm:g}")
         bends = (f"{cable.bend_radius_mm:.1f}", f"{cable.least_bend_radius_mm:.1f}")
         sizes = (*bends, f"{cable.length_mm:.0f}", f"{cable.cut_mm:g}", f"{cable.mass_g:.1f}")
         for k, (point, what) in enumerate(zip(cable.points_mm.tolist(), cable.notes, strict=True), 1):
-            writer.writerow((*head, *sizes, k, *(f"{value:.1f}" for value in point), what, cable.warning))
-    return stream.getvalue()
+            rows.append((*head, *sizes, k, *(f"{value:.1f}" for value in point), what, cable.warning))
+    return csv_text(_CABLE_COLUMNS, rows)
