@@ -47,7 +47,7 @@ def main(rounds: int) -> None:
         loads = loads_of({name: columns[name] for name in LOAD_NAMES})
         factors = strength_factors(designs, actuators, loads)
         for i in range(size):
-            one = Loads(**{name: getattr(loads, name)[i : i + 1] for name in LOAD_NAMES})
+            one = {name: loads[name][i : i + 1] for name in LOAD_NAMES}
             if not np.array_equal(strength_factors(designs[i : i + 1], actuators, one)[0], factors[i]):
                 raise SystemExit("a design has other factors alone than in its batch: no share is printed")
         pairs = [
