@@ -16,9 +16,8 @@ from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.strength.groups import INFORMING, Group
 
 Loads = Mapping[str, Floats]
-"""Loads of n jumps, each of shape (n,), by ``LOAD_NAMES``; NaN where unknown.
-
-The end stops and the foot's impact are in the torque through a gearbox; a housing reacts to no more than that."""
+"""Loads of n jumps, each of shape (n,), by ``LOAD_NAMES``; NaN where unknown. The end stops and the foot's impact are
+in the torque through a gearbox; a housing reacts to no more than that."""
 _OF_SIDES = ("peak_torque_{}_n_m", "peak_gear_torque_{}_n_m", "peak_stop_torque_{}_n_m", "stop_compression_{}")
 LOAD_NAMES: tuple[str, ...] = (
     *(name.format(side) for name in _OF_SIDES for side in ("hip", "knee")),
