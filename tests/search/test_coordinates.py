@@ -181,7 +181,7 @@ def test_a_stored_study_has_real_ratios_and_goes_on_from_them(tmp_path, monkeypa
     assert [trial.params["knee_ratio"] for trial in trials] == whole.trials["knee_ratio"].tolist()
     with sqlite3.connect(tmp_path / "whole.db") as database:
         text = database.execute("SELECT DISTINCT distribution_json FROM trial_params WHERE param_name = 'knee_ratio'")
-        (limits,) = (json.loads(row[0])["attributes"] for row in text)
+        (limits,) = (json.loads(row[0]) for row in text)
     assert (limits["low"], limits["high"]) == (min(real), max(real))
 
 
