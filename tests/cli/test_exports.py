@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from pareto_monoped.cli import main
-from pareto_monoped.cli.exports import _duration
+from pareto_monoped.cli.exports import _duration, _radians
 from tests.cli.support import STORED
 
 
@@ -170,3 +170,8 @@ def test_drawings_can_be_left_out(capsys, tmp_path):
     assert code == 0
     assert json.loads((folder / "design.json").read_text())["formats"] == ["dxf"]
     assert not (folder / "drawings").exists()
+
+
+def test_angles_of_a_pose_are_given_in_degrees():
+    assert _radians(180.0) == pytest.approx(3.141592653589793)
+    assert _radians(None) is None

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from pareto_monoped.analysis.choices import HEIGHTS_M, two_fronts
+from pareto_monoped.cli.pareto import _newer
 from pareto_monoped.pareto.pick import pick
 from pareto_monoped.pareto.selectors import Knee
 from pareto_monoped.storage.reader import read_study
@@ -196,3 +197,13 @@ def test_a_missing_study_is_one_line(tmp_path):
     assert done.returncode == 2
     assert len(done.stderr.strip().splitlines()) == 1
     assert "studies/quick.toml" in done.stderr
+
+
+def test_a_page_is_made_again_if_one_of_its_sources_is_younger(tmp_path):
+    page, old, young = (tmp_path / name for name in ("page", "old", "young"))
+    for path, seconds in ((old, 100), (page, 200), (young, 300)):
+        path.touch()
+        os.utime(path, (seconds, seconds))
+    assert _newer(page, old)
+    assert not _newer(page, old, young)
+    assert not _newer(tmp_path / "none", old)
