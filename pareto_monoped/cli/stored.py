@@ -67,7 +67,7 @@ def verify(
         result = verify_study(db, simulate=simulate, expect=expect, workers=workers or cores(), executor=executor)
     for line in result.findings:
         echo(f"found: {line}", err=True)
-    if result.foreign:
+    if result.foreign and not result.findings:
         note(foreign_note(len(result.foreign)))
     if not result.sealed:
         note(UNSEALED)

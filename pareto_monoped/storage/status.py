@@ -50,6 +50,8 @@ def read_summary(db: StudyPlace) -> Summary:
         last = connection.execute(f"{ROWS['history']} DESC LIMIT 1").fetchall()
         audits = connection.execute(ROWS["audits"]).fetchall()
         findings = checked.seals.row_findings("history", last, whole=False)
+        if [row[0] for row in last] != sorted(map(int, checked.seals.written.get("history", {})))[-1:]:
+            findings.append("the last rows of its history are missing")
         if findings := [*findings, *checked.seals.row_findings("audits", audits)]:
             raise damaged(db, findings)
         study = study_from_dict(checked.meta.study, source=f"study database {str(db)!r}")

@@ -94,6 +94,7 @@ def test_a_bent_kept_front_is_refused(large, statement, words):
     ("statement", "words"),
     [
         ("UPDATE monoped_history SET seconds = seconds + 1 WHERE generation = 8", "row 8 of its history"),
+        ("DELETE FROM monoped_history WHERE generation > 6", "last rows of its history are missing"),
         ("UPDATE monoped_audits SET well_conditioned = 1", "of its audits does not match"),
         ("DELETE FROM monoped_audits WHERE well_conditioned = 0", "of its audits is missing"),
     ],
