@@ -3,7 +3,6 @@
 No output replaces a study, and none replaces a file of another kind unless ``force`` is set.
 """
 
-import ctypes
 import errno
 import os
 import secrets
@@ -80,6 +79,8 @@ def rename_new(source: Path, target: Path) -> None:
 
     Linux alone does so by renameat2 (its manual page, RENAME_NOREPLACE). Elsewhere a kill may leave both names.
     """
+    import ctypes
+
     with suppress(AttributeError):
         names = os.fsencode(source.absolute()), os.fsencode(target.absolute())
         if ctypes.CDLL(None, use_errno=True).renameat2(-1, names[0], -1, names[1], ctypes.c_uint(1)) == 0:

@@ -141,14 +141,13 @@ def verify(
 
 
 def _of_another_hash(data: StudyData, expect: str) -> str:
-    """Return the finding; raise ``DatabaseError`` for a study that has only grown."""
-    finding = f"its content hash is {data.content_hash[: len(expect)]}, expected {expect}"
-    if (known := trials_of_hash(data.meta, data.parts, expect)) is None:
-        return f"{finding}: it was changed, an older copy has taken its place, or it is another study"
-    raise DatabaseError(
-        f"study database {str(data.db)!r}: {finding}, which its first {known} trials have; "
-        f"{len(data.trials) - known} came later, so give the hash that it has now, or a copy of then"
+    known = trials_of_hash(data.meta, data.parts, expect)
+    cause = (
+        "it was changed, an older copy has taken its place, or it is another study"
+        if known is None
+        else f"its first {known} trials have the latter, and {len(data.trials) - known} have come since"
     )
+    return f"its content hash is {data.content_hash[: len(expect)]}, expected {expect}: {cause}"
 
 
 def _kept_front_findings(connection: Connection, data: StudyData) -> Iterator[str]:

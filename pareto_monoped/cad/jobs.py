@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Required, TypedDict, Unpack
 
 from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.ratiomap import JointMaps
@@ -41,6 +41,15 @@ class Job:
         return JointMaps(hip=hip, knee=hip if self.knee_motor is None else map_of(self.knee_motor, self.rules))
 
 
+class How(TypedDict, total=False):
+    """Fields of ``Job`` that do not depend on where its design comes from."""
+
+    folder: Required[Path]
+    force: bool
+    hip_rad: float | None
+    knee_rad: float | None
+
+
 def case_job(
     case: str,
     *,
@@ -49,11 +58,11 @@ def case_job(
     rules: RuleSet = DEFAULT_RULES,
     formats: Sequence[str] | None = None,
     strength: bool | None = None,
-    **how: Any,
+    **how: Unpack[How],
 ) -> Job:
     """Return the job for a row of the paper's Table I with the default calibration, our best model of that robot.
 
-    ``strength`` defaults to that of a study with this calibration; ``how`` are ``folder`` and other fields of ``Job``.
+    ``strength`` defaults to that of a study with this calibration; ``How`` has the other arguments.
 
     Raises:
         InputError: an unknown format.
@@ -74,11 +83,16 @@ def case_job(
 
 
 def trial_job(
-    data: "StudyData", trial: int, *, formats: Sequence[str] | None = None, strength: bool | None = None, **how: Any
+    data: "StudyData",
+    trial: int,
+    *,
+    formats: Sequence[str] | None = None,
+    strength: bool | None = None,
+    **how: Unpack[How],
 ) -> Job:
     """Return the job for one trial of a study, with its motors and its calibration as the study stores them.
 
-    ``strength`` defaults to what the study asks; ``how`` are ``folder`` and other fields of ``Job``.
+    ``strength`` defaults to what the study asks; ``How`` has the other arguments.
 
     Raises:
         InputError: an unknown format.

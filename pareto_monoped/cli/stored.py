@@ -3,8 +3,8 @@
 import errno
 import re
 import webbrowser
-from collections.abc import Iterator
-from itertools import chain
+from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -238,44 +238,45 @@ def trials(db: StudyPlace, csv_file: Path | None, parquet: Path | None, state: s
 
     if parquet is not None:
         require_extra("parquet", "--parquet", instead="use --csv")
-
-    count = 0
-
-    def chosen() -> "Iterator[DataFrame]":
-        """Yield the trials block by block: a study of a million needs no more memory than a small one."""
-        nonlocal count
+    count, first = 0, True
+    with ExitStack() as outputs:
+        write: list[Callable[[DataFrame], object]] = []
+        if csv_file is not None:
+            new = outputs.enter_context(replacing(csv_file, force=force))
+            stream = outputs.enter_context(new.open("w", encoding="utf-8", newline=""))
+            write.append(lambda rows: stream.write(_csv(rows, header=first)))
+        if parquet is not None:
+            write.append(_parquet_writer(outputs, outputs.enter_context(replacing(parquet, force=force))))
+        if not write:
+            write.append(lambda rows: echo(_csv(rows, header=first), nl=False))
+        # Block by block: a study of a million trials needs no more memory than a small one.
         for rows in read_trials(db):
-            if count == 0 and not rows.attrs["sealed"]:
+            if first and not rows.attrs["sealed"]:
                 note(UNSEALED)
             wanted = rows if state is None else rows[rows["state"] == state]
-            count += len(wanted)
-            yield wanted
-
-    if csv_file is None and parquet is None:
-        for text in _csv(chosen()):
-            echo(text, nl=False)
-    if csv_file is not None:
-        with replacing(csv_file, force=force) as new, new.open("w", encoding="utf-8", newline="") as stream:
-            stream.writelines(_csv(chosen()))
-        echo(f"wrote {csv_file} ({count} trials)", err=True)
-    if parquet is not None:
-        count = 0
-        with replacing(parquet, force=force) as new:
-            _write_parquet(chosen(), new)
-        echo(f"wrote {parquet} ({count} trials)", err=True)
+            for each in write:
+                each(wanted)
+            count, first = count + len(wanted), False
+    for path in (csv_file, parquet):
+        if path is not None:
+            echo(f"wrote {path} ({count} trials)", err=True)
 
 
-def _csv(blocks: "Iterator[DataFrame]") -> Iterator[str]:
-    for k, rows in enumerate(blocks):
-        yield rows.to_csv(index=False, header=k == 0, lineterminator="\n")
+def _csv(rows: "DataFrame", *, header: bool) -> str:
+    return str(rows.to_csv(index=False, header=header, lineterminator="\n"))
 
 
-def _write_parquet(blocks: "Iterator[DataFrame]", path: Path) -> None:
+def _parquet_writer(outputs: ExitStack, path: Path) -> "Callable[[DataFrame], None]":
+    """Return what appends rows to a new file, which ``outputs`` closes."""
     from pyarrow import Table
     from pyarrow.parquet import ParquetWriter
 
-    tables = (Table.from_pandas(rows, preserve_index=False) for rows in blocks)
-    first = next(tables)
-    with ParquetWriter(path, first.schema) as writer:
-        for table in chain((first,), tables):
-            writer.write_table(table)
+    writers: list[Any] = []
+
+    def write(rows: "DataFrame") -> None:
+        table = Table.from_pandas(rows, preserve_index=False)
+        if not writers:  # the first rows say what the columns are
+            writers.append(outputs.enter_context(ParquetWriter(path, table.schema)))
+        writers[0].write_table(table)
+
+    return write

@@ -298,7 +298,9 @@ class StudyData:
 
 
 def read_trials(db: StudyPlace) -> Iterator[pd.DataFrame]:
-    """Yield all trials as ``read_study`` returns them, block by block, at least one, each checked before it is yielded.
+    """Yield all trials as ``read_study`` returns them, block by block, each checked before it is yielded.
+
+    There is at least one block. Its ``attrs["sealed"]`` says whether the study has a running hash.
 
     Raises:
         DatabaseError: as by ``read_study``, where the damage is met.
@@ -321,8 +323,8 @@ def read_trials(db: StudyPlace) -> Iterator[pd.DataFrame]:
             trials = with_agility(with_motors(pd.DataFrame(values, copy=False), study, meta, db))
             trials.attrs["sealed"] = seals is not None
             yield trials
-        if seals is not None and count < seals.trials:
-            raise damaged(db, missing_findings(count, seals.trials))
+        if seals is not None and (findings := missing_findings(count, seals.trials)):
+            raise damaged(db, findings)
 
 
 def read_study(db: StudyPlace) -> StudyData:

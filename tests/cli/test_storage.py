@@ -37,7 +37,7 @@ def test_a_content_hash_finds_what_was_resealed_rolled_back_or_exchanged(path, t
     for db, hashed, words in (
         (path, expected, "it was changed, an older copy has taken its place, or it is another study"),
         (older, expected, "it was changed, an older copy"),
-        (older, earlier, "which its first 20 trials have; 10 came later"),
+        (older, earlier, "its first 20 trials have the latter, and 10 have come since"),
     ):
         assert ended(capsys, "verify", db)[0] == 0
         code, out, err = ended(capsys, "verify", db, "--expect", hashed)
