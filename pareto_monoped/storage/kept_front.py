@@ -174,9 +174,20 @@ def front_trials(db: StudyPlace) -> dict[int, str]:
 
 
 def foreign_count(connection: Connection, own: int) -> int:
-    """Count how many of Optuna's trials are not of this package, which has so many of its ``own``."""
+    """Count how many of Optuna's trials are not of this package, which has so many of its ``own``.
+
+    Raises:
+        ValueError: rows of another table stand among the trials, or a trial stands there twice.
+    """
     # Of a column that no index has: a damaged index would give another count.
     (total,) = connection.execute("SELECT count(number) FROM trials").fetchone()
+    if total > own:
+        (sound,) = connection.execute(
+            "SELECT count(DISTINCT number) FROM trials "
+            "WHERE state IN ('COMPLETE', 'FAIL', 'PRUNED', 'RUNNING', 'WAITING')"
+        ).fetchone()
+        if sound != total:
+            raise ValueError(f"{total - sound} rows among Optuna's trials are no trials")
     return max(0, int(total) - own)
 
 

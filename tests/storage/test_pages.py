@@ -75,3 +75,18 @@ def test_a_page_left_from_earlier_is_found_by_every_reader(made, tmp_path):
         # It was a page of Optuna's tables or of no table.
         assert again[0].trials.equals(whole[0].trials)
         assert again[1] == whole[1]
+
+
+def test_rows_of_another_table_among_optunas_trials_are_not_told_as_foreign_trials(made, tmp_path):
+    """``status`` counted the values of trials as trials of an Optuna user."""
+    pages, path = pages_of(made[0]), tmp_path / "s.db"
+    path.write_bytes(made[0])
+    with closing(sqlite3.connect(path)) as connection:
+        sql = "SELECT pageno, ncell FROM dbstat WHERE name = ? AND pagetype = 'leaf' ORDER BY ncell"
+        trials, values = (connection.execute(sql, (name,)).fetchall() for name in ("trials", "trial_values"))
+    assert values[-1][1] > trials[0][1]
+    pages[trials[0][0] - 1] = pages[values[-1][0] - 1]
+    path.write_bytes(b"".join(pages))
+    for reader in (read_front, status):
+        with pytest.raises(DatabaseError, match="rows among Optuna's trials are no trials"):
+            reader(path)
