@@ -179,12 +179,12 @@ def foreign_count(connection: Connection, own: int) -> int:
     Raises:
         ValueError: rows of another table stand among the trials, or a trial stands there twice.
     """
-    # Of a column that no index has: a damaged index would give another count.
-    (total,) = connection.execute("SELECT count(number) FROM trials").fetchone()
+    (total,) = connection.execute("SELECT count(*) FROM trials").fetchone()  # of an index, which takes little time
     if total > own:
-        (sound,) = connection.execute(
-            "SELECT count(DISTINCT number) FROM trials "
-            "WHERE state IN ('COMPLETE', 'FAIL', 'PRUNED', 'RUNNING', 'WAITING')"
+        # Read from the table itself, because the index may be damaged.
+        total, sound = connection.execute(
+            "SELECT count(number), count(DISTINCT CASE WHEN state IN "
+            "('COMPLETE', 'FAIL', 'PRUNED', 'RUNNING', 'WAITING') THEN number END) FROM trials"
         ).fetchone()
         if sound != total:
             raise ValueError(f"{total - sound} rows among Optuna's trials are no trials")

@@ -84,8 +84,14 @@ def test_rows_of_another_table_among_optunas_trials_are_not_told_as_foreign_tria
     with closing(sqlite3.connect(path)) as connection:
         sql = "SELECT pageno, ncell FROM dbstat WHERE name = ? AND pagetype = 'leaf' ORDER BY ncell"
         trials, values = (connection.execute(sql, (name,)).fetchall() for name in ("trials", "trial_values"))
+        (index,) = connection.execute("SELECT pageno FROM dbstat WHERE name = 'ix_trials_study_id'").fetchone()
     assert values[-1][1] > trials[0][1]
+    whole = status(path)
     pages[trials[0][0] - 1] = pages[values[-1][0] - 1]
+    path.write_bytes(b"".join(pages))
+    assert status(path) == whole
+    assert read_front(path).foreign == 0
+    pages[index - 1] = pages[values[-1][0] - 1].replace(b"\r", b"\n", 1)  # the index has more rows, too
     path.write_bytes(b"".join(pages))
     for reader in (read_front, status):
         with pytest.raises(DatabaseError, match="rows among Optuna's trials are no trials"):
