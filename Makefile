@@ -37,6 +37,9 @@ $(STAMP): pyproject.toml constraints.txt setup.py tools/system_libraries.sh tool
 pareto: setup
 	@$(BIN)/pareto-monoped pareto
 
+# Rewritten assertions and compiled modules are kept, also where the environment says otherwise.
+test test-long: export PYTHONDONTWRITEBYTECODE :=
+
 test: setup
 	$(BIN)/python -m pytest $(SHARED) -m "not long"
 

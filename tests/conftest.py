@@ -37,6 +37,7 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
 
 def pytest_configure() -> None:
     """Keep temporary files in memory where there is room: the disk is waited for a hundred times per study."""
+    os.environ["MUJOCO_GL"] = "disable"  # as the command line does: nothing is drawn with MuJoCo
     memory = Path("/dev/shm")
     if memory.is_dir() and shutil.disk_usage(memory).free > 8e9:
         os.environ.setdefault("PYTEST_DEBUG_TEMPROOT", str(memory))

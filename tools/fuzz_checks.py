@@ -18,8 +18,8 @@ Snapshot = dict[str, tuple[str, str]]
 """Path of each file -> kind and digest of its content."""
 Result = tuple[int | None, str, str]
 """Exit code, None for a call that hangs; output; messages."""
-WRITERS = {"run", "resume", "robust", "repair", "pareto", "campaign"}
-"""Commands that continue a study."""
+WRITERS = {"run", "resume", "robust", "sensitivity", "repair", "pareto", "campaign"}
+"""Commands that continue a study, or keep in it what they found."""
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\u2028\u2029]")
 _STYLE = re.compile("\x1b\\[[0-9;]*m")
 _FAULTS = (
@@ -116,6 +116,8 @@ def _whole(path: Path) -> bool:
         return int.from_bytes(content[8:12], "little") == len(content)
     if content.startswith(b"PK"):  # a 3MF file is a ZIP archive, whose directory comes last
         return zipfile.is_zipfile(path)
+    if content.startswith(b"PAR1"):  # Parquet ends as it begins
+        return content.endswith(b"PAR1")
     if content.startswith(b"GIF8"):
         return content.endswith(b";")
     if content.startswith(b"%PDF"):

@@ -17,6 +17,7 @@ def stored(tmp_path_factory):
 
 
 @pytest.mark.usefixtures("unchecked")
+@pytest.mark.long
 def test_a_design_is_exported_as_by_the_command_line(tmp_path):
     record = pm.export(C, tmp_path / "api", formats=["mjcf", "urdf"])
     assert json.loads((tmp_path / "api" / "design.json").read_text()) == json.loads(json.dumps(record))

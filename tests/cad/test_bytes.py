@@ -32,6 +32,7 @@ def exports(place, *cases):
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.mark.long
 def test_step_files_of_both_actuators_come_out_the_same_twice(product):
     # An ISSPG and an ESSPG: gears have the most faces, whose order must not change. Most else is left out for time.
     units = tuple(

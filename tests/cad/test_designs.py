@@ -47,9 +47,8 @@ def test_a_design_passes_every_check(actuator_map, numbers):
 _MOTORS = {"U12": (8.0, 4.5), "U8": (5.0, 6.8), "U10": (8.0, 4.5), "MN8014": (8.0, 4.5), "MAD_M6C12": (6.0, 5.0)}
 
 
-@pytest.mark.parametrize(
-    "motor", [name if name == "MAD_M6C12" else pytest.param(name, marks=pytest.mark.long) for name in motor_names()]
-)
+@pytest.mark.long
+@pytest.mark.parametrize("motor", motor_names())
 def test_a_robot_of_any_motor_is_exported(motor, calibration, tmp_path):
     """Its actuators fit one leg, its files load, its parts list adds up to its mass; a short thigh, a long shank."""
     knee_ratio, hip_ratio = _MOTORS.get(motor, (7.9, 4.0))

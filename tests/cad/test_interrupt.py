@@ -48,7 +48,7 @@ needs_proc = pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="ne
 @pytest.mark.parametrize(
     "phase",
     [
-        "building",
+        pytest.param("building", marks=pytest.mark.long),
         pytest.param("simulating", marks=pytest.mark.long),
         pytest.param("checking", marks=pytest.mark.long),
         "writing",

@@ -32,6 +32,7 @@ def test_a_campaign_that_has_ended_needs_no_scheduler(tmp_path):
     assert run_campaign([], scheduler="tcp://127.0.0.1:1", changed=lambda _: None, notify=lambda _: None)
 
 
+@pytest.mark.long
 def test_as_many_studies_run_as_the_scheduler_has_threads_and_equal_those_run_alone(tmp_path, monkeypatch):
     """It was as many as the coordinator has cores."""
     monkeypatch.setattr("pareto_monoped.campaign.coordinator.cores_here", lambda: 1)

@@ -29,6 +29,7 @@ def safe(kill, code):
     assert kill["code"] == code, kill
 
 
+@pytest.mark.long
 def test_killed_and_interrupted(tmp_path):
     """A coordinator is killed while both workers are at it; of the next one a worker, before an interrupt ends it."""
     path = written(tmp_path, 'motors = ["VT8020", "U8"]', SMALL.replace("40", "4000"))

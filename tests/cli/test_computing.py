@@ -78,6 +78,7 @@ def test_a_scheduler_is_that_of_the_address(tmp_path):
         until(lambda: crew._staff.state() == "has no worker")
 
 
+@pytest.mark.long
 def test_a_worker_with_another_cad_package_makes_no_exports(tmp_path, capsys):
     """It was given them: what it made differed from the others', or failed."""
     pytest.importorskip("distributed")

@@ -166,6 +166,7 @@ class TestMainJob:
         assert (design / "design.json").read_text() == text
 
 
+@pytest.mark.long
 def test_a_study_of_other_objectives_goes_from_one_front_to_its_cad(tmp_path):
     (tmp_path / "studies").mkdir()
     (tmp_path / "studies" / "quick.toml").write_text(

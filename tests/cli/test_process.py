@@ -48,6 +48,13 @@ def test_a_signal_ends_any_command_without_a_trace(tmp_path, number):
     assert list(tmp_path.iterdir()) == []
 
 
+# A shell starts background jobs with SIGINT ignored, and what they start has it so.
+_UNSHIELDED = (
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    "from pareto_monoped.__main__ import main; main()"
+)
+
+
 @pytest.mark.parametrize("module", ["click", "difflib", "numpy"])
 def test_an_interrupt_while_modules_are_imported_ends_in_one_line(tmp_path, module):
     """The module is one of ours that interrupts its own import, as Ctrl-C would at that moment."""
@@ -55,7 +62,7 @@ def test_an_interrupt_while_modules_are_imported_ends_in_one_line(tmp_path, modu
         "import os, signal, time\nos.kill(os.getpid(), signal.SIGINT)\ntime.sleep(9)\n"
     )
     done = subprocess.run(
-        [sys.executable, "-P", "-c", "from pareto_monoped.__main__ import main; main()", "status", str(STORED)],
+        [sys.executable, "-P", "-c", _UNSHIELDED, "status", str(STORED)],
         env=os.environ | {"PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"},
         capture_output=True,
         text=True,

@@ -7,6 +7,7 @@ from pareto_monoped.cli import _run as cli
 from pareto_monoped.cli import watching
 
 
+@pytest.mark.long
 def test_a_gif_is_written_beside_the_numbers(tmp_path, capsys):
     path = tmp_path / "jump.gif"
     assert cli(["simulate", "--case", "C", "--gif", str(path), "--slower", "1"]) == 0

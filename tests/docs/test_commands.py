@@ -71,7 +71,18 @@ def searches() -> dict[str, tuple[Path, str]]:
     return {}
 
 
-@pytest.mark.parametrize("page", [p for p in PAGES if commands(p)], ids=lambda p: str(p.relative_to(ROOT)))
+LONG = {"studies.md"}
+"""Pages whose commands take as long as those of all others: a campaign over motors, with its report."""
+
+
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(page, id=str(page.relative_to(ROOT)), marks=pytest.mark.long if page.name in LONG else ())
+        for page in PAGES
+        if commands(page)
+    ],
+)
 def test_commands_of_the_page_run_and_print_what_it_shows(
     page, tmp_path, monkeypatch, capsys, tmp_path_factory, searches
 ):

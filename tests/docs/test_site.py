@@ -112,6 +112,7 @@ def test_no_link_of_a_markdown_file_is_broken():
 
 
 @pytest.mark.browser
+@pytest.mark.long
 def test_the_site_fits_desk_and_phone_and_searches_without_a_network(site, pages, browser):
     context = browser.new_context()
     context.set_offline(True)

@@ -48,6 +48,7 @@ def kernel(tmp_path_factory):
 
 
 @pytest.mark.filterwarnings("ignore")  # of the kernel's own libraries
+@pytest.mark.long
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs(path, kernel):
     manager, folder = kernel

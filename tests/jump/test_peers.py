@@ -151,6 +151,7 @@ def test_any_nan_is_a_nan(jumps, monkeypatch):
     assert len(digests) == 1
 
 
+@pytest.mark.long
 def test_a_worker_of_one_process_uses_all_cores_and_two_share_them():
     for count in (1, 2):
         with peers.processes(count) as crew:

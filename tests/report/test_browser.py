@@ -244,8 +244,7 @@ def test_switches_hide_and_show(tab):
     tab.page.uncheck("[data-show=infeasible]")
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize(("width", "height"), [(1440, 900), (390, 844)])
+@pytest.mark.parametrize(("width", "height", "scheme"), [(1440, 900, "light"), (390, 844, "dark")])
 def test_nothing_sticks_out_sideways(tab, file, width, height, scheme):
     tab.look(width, height)
     tab.scroll_through()

@@ -33,6 +33,7 @@ LOOKS = [
 
 
 @pytest.mark.parametrize(("width", "height", "view"), LOOKS)
+@pytest.mark.long
 def test_axe_finds_nothing_serious(file, open_tab, width, height, view):
     """All its rules in light colours; of those, only contrast depends on the scheme."""
     tab = open_tab(file, width=width, height=height, fragment=VIEWS[view])

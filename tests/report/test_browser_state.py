@@ -113,8 +113,8 @@ def test_a_link_brings_the_same_view_back(tab, file, card, limits, open_tab):
 
 @pytest.mark.parametrize(
     "damage",
-    ["at=0:999999", "at=7:1", "range=height_m:low:", "range=none:1:2", "range=height_m:2:1", "shine=1", "x=none", "%",
-     "layers=none", "hide=x", "at=0:case:none", "keep=0:x", "sort=none", "keep=0:1:%E0%A4%A"],
+    ["at=0:999999", "range=height_m:low:", "range=none:1:2", "range=height_m:2:1", "shine=1", "%", "hide=x",
+     "at=0:case:none", "keep=0:x", "sort=none", "keep=0:1:%E0%A4%A"],
 )  # fmt: skip
 def test_a_damaged_address_is_left_out_with_one_line(tab, damage):
     tab.page.evaluate("location.hash = '#view=1&log=x'")

@@ -102,6 +102,7 @@ def test_a_small_generation_of_three_objectives_keeps_its_size(population):
         search.tell(replace(scores, objectives=three, values=np.hstack((scores.values, mass))))
 
 
+@pytest.mark.long
 def test_no_motor_is_given_up_by_a_search_over_six(tmp_path):
     """The heaviest motor, which alone jumps above 1.46 m, had 9 of the 1,080 designs after those drawn at first."""
     study = replace(load_study(shipped_studies()["any_motor"]), audit=False)

@@ -6,7 +6,7 @@ import sys
 
 from tests.tools.conftest import TOOLS
 
-CALLS, SEED = 60, 1
+CALLS, SEED = 15, 1
 
 
 def fuzzed(*words):

@@ -231,6 +231,7 @@ def test_hip_and_knee_are_screwed_to_their_plates_before_the_plates_are_joined(p
         assert sum(plate in step.members for plate in plates) <= 1, bodies[k].instance.name
 
 
+@pytest.mark.long
 def test_ways_and_keys_are_free_when_tried_with_meshes(planned):
     """Independent of the flat shapes: meshes moved in small steps, and a key as a cylinder, cut with what is there.
 
