@@ -5,7 +5,6 @@ import gc
 import os
 import pickle
 import shutil
-import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -41,27 +40,6 @@ def pytest_configure() -> None:
     memory = Path("/dev/shm")
     if memory.is_dir() and shutil.disk_usage(memory).free > 8e9:
         os.environ.setdefault("PYTEST_DEBUG_TEMPROOT", str(memory))
-
-
-@pytest.fixture(scope="session", autouse=True)
-def revisions() -> Iterator[None]:
-    """Optuna reads its files of revisions three times per study that it creates, for half of the time: here once."""
-    if "pareto_monoped.storage" not in sys.modules:
-        yield
-        return
-    from alembic.script import ScriptDirectory
-
-    read, kept = ScriptDirectory.from_config, {}
-
-    def from_config(config: Any) -> Any:
-        place = config.get_main_option("script_location")
-        if place not in kept:
-            kept[place] = read(config)
-        return kept[place]
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ScriptDirectory, "from_config", from_config)
-        yield
 
 
 def pytest_collection_finish() -> None:
