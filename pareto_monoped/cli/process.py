@@ -4,12 +4,14 @@ Whatever a command raises becomes one line on stderr and an exit code here. Code
 errors (``errors``); what else comes up is an error of the system or a fault of this program.
 """
 
+import _thread
 import atexit
 import difflib
 import os
 import re
 import signal
 import sys
+import threading
 import traceback
 import warnings
 from collections.abc import Callable, Iterator
@@ -52,6 +54,7 @@ def owned() -> Iterator[Callable[[int], NoReturn]]:
         warnings.simplefilter("ignore")
     # No command draws with MuJoCo, whose import otherwise takes a third longer for a library of windows.
     os.environ["MUJOCO_GL"] = "disable"
+    sys.unraisablehook = _raised_again
     code = 0
 
     def leave() -> None:
@@ -72,6 +75,14 @@ def owned() -> Iterator[Callable[[int], NoReturn]]:
     except KeyboardInterrupt:
         # A signal at the last moment, while the command's end is being told.
         ended(_INTERRUPTED)
+
+
+def _raised_again(lost: "sys.UnraisableHookArgs") -> None:
+    """Raise an interrupt that came in a destructor, where Python would print and forget it, once more."""
+    if lost.exc_type is KeyboardInterrupt:
+        threading.Timer(0.01, _thread.interrupt_main).start()  # not at once: it would be raised in here
+    else:
+        sys.__unraisablehook__(lost)
 
 
 def _open_streams() -> None:

@@ -71,6 +71,36 @@ def test_an_interrupt_while_modules_are_imported_ends_in_one_line(tmp_path, modu
     assert (done.returncode, done.stdout, done.stderr.strip()) == (130, "", "interrupted")
 
 
+LOST = """
+import os, signal, time
+from pareto_monoped import cli
+
+class Slow:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(5)
+
+def command(**_):
+    Slow()
+    time.sleep(5)
+
+cli.cli.main = command
+cli.main()
+"""
+
+
+def test_a_signal_in_a_destructor_is_not_lost():
+    """Found by the fuzzer: Python printed a traceback, and the command went on."""
+    done = subprocess.run(
+        [sys.executable, "-c", LOST],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr.strip()) == (130, "interrupted")
+
+
 ENDS = """
 import atexit, sys
 from pareto_monoped import cli
