@@ -80,7 +80,8 @@ def owned() -> Iterator[Callable[[int], NoReturn]]:
 def _raised_again(lost: "sys.UnraisableHookArgs") -> None:
     """Raise an interrupt that came in a destructor, where Python would print and forget it, once more."""
     if lost.exc_type is KeyboardInterrupt:
-        threading.Timer(0.01, _thread.interrupt_main).start()  # not at once: it would be raised in here
+        # Not at once, when it would be raised in here; as SIGTERM, because SIGINT may be ignored.
+        threading.Timer(0.01, _thread.interrupt_main, (signal.SIGTERM,)).start()
     else:
         sys.__unraisablehook__(lost)
 
