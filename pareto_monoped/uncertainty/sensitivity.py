@@ -120,7 +120,10 @@ class Factor(Strict):
     def text(self) -> str:
         """Its range as it is shown, such as "-5 to 5 %" or "0 to 3 ms"."""
         unit, scale = _SHOWN.get(self.unit, (self.unit, 1.0))
-        return f"{self.lower * scale:.4g} to {self.upper * scale:.4g} {unit}".rstrip()
+        ends = self.lower * scale, self.upper * scale
+        places = 3 - int(np.floor(np.log10(max(map(abs, ends)))))  # both as fine as four digits of the larger one
+        low, high = (f"{round(end, places):.4g}" for end in ends)
+        return f"{low} to {high} {unit}".rstrip()
 
 
 _SHOWN = {"share": ("%", 100.0), "m": ("mm", 1000.0), "s": ("ms", 1000.0), "1": ("", 1.0)}
