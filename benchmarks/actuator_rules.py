@@ -74,6 +74,7 @@ def _changes(s: ActuatorSettings) -> Iterator[tuple[str, ActuatorSettings]]:
         yield f"{text}, for all gears", steel(grade)
     yield "no reversed bending of the planets", rating(reversed_bending_factor=1.0)
     yield "no reversed torque in the duty", duty(reversed=(False,) * len(s.parts.duty.torque_shares))
+    yield "planets not crowned", rating(planet_crowning_um=0.0)
     yield "teeth drawn without thinning", parts(gears=replace(s.parts.gears, backlash_modules=0.0))
     yield "1,000,000 jumps", duty(jumps=1e6)
     yield "10,000 jumps", duty(jumps=1e4)

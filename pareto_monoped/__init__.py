@@ -10,7 +10,7 @@ Example:
     >>> import pareto_monoped as pm
     >>> jump = pm.simulate(pm.PAPER_CASES["C"].design)
     >>> print(f"{jump.height_m[0]:.2f} m")
-    1.05 m
+    1.06 m
     >>> print(*(f"{one.name}, {one.lower:g} to {one.upper:g} {one.unit}" for one in pm.VARIABLES[:2]), sep="; ")
     thigh_length_m, 0.3 to 0.5 m; shank_length_m, 0.3 to 0.5 m
     >>> [one.name for one in pm.MEASURES if one.unit == "J" and one.direction == "minimise"][:2]

@@ -73,7 +73,9 @@ class RatingData(Strict):
     tip_thickness_modules: Positive  #: least thickness of the teeth of sun and planets at their tips
     face_step_mm: Positive  #: face widths are multiples of this
     accuracy_class: Annotated[int, Field(ge=3, le=10)]  #: of the teeth, ISO 1328-1
-    flank_finish_factor: Positive  #: Z_L Z_v Z_R
+    planet_crowning_um: Annotated[float, Field(ge=0.0)]  #: C_beta of the planets' flanks
+    flank_finish_factor: Positive  #: Z_L Z_v Z_R of sun and planets
+    ring_finish_factor: Positive  #: of planets and ring
     flank_roughness_um: Positive  #: greatest Rz of the flanks, for which it holds
     root_roughness_um: Annotated[float, Field(ge=1.0, le=40.0)]  #: Rz of the fillets
     reversed_bending_factor: Positive  #: Y_M of the planets, whose teeth bend both ways in every turn

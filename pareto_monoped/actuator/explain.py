@@ -9,6 +9,7 @@ from typing import Any
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.layout import Family
 from pareto_monoped.actuator.motor import PEAK_TO_CONTINUOUS, Motor
+from pareto_monoped.actuator.rating.sheet import tip_depths_mm
 from pareto_monoped.actuator.ratiomap import ActuatorMap, Candidate, MapEntry, cures
 from pareto_monoped.actuator.rules import CONSTRAINTS
 from pareto_monoped.actuator.service.bearing_life import BearingService
@@ -154,6 +155,7 @@ def details(entry: MapEntry, sheet: ServiceSheet) -> dict[str, Any]:
     return summary(entry, sheet) | {
         "contact_ratio_sun": actuator.contact_ratio_sun,
         "contact_ratio_ring": actuator.contact_ratio_ring,
+        "tips_in_roots_mm": {f"{tip} in {root}": depth for (tip, root), depth in tip_depths_mm(actuator.gears).items()},
         "efficiency_churning": sheet.losses.efficiency_churning,
         "compliance_rad_per_n_m": dataclasses.asdict(sheet.stiffness),
         "bearings": [_bearing(found) for found in sheet.bearings],

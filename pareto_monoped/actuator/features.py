@@ -61,7 +61,7 @@ def sun_part(
     seats_mm: tuple[float, ...] = (),
 ) -> Part:
     """Build the sun in one piece with its splined shaft, whose prisms ``behind`` the teeth depend on the family."""
-    teeth, steel = at.gears.sun(settings.tooth_thinning_mm(at.gears.module_mm)), settings.gear_steels.sun
+    teeth, steel = at.gears.sun(), settings.gear_steels.sun
     return gear_part(settings, steel)(
         name="sun",
         prisms=(
@@ -315,7 +315,11 @@ SPLINE_CLASS = 8
 
 
 def rated_teeth(
-    gear: ExternalGear | InternalGear, steel: GearGrade, settings: ActuatorSettings, *mates: ExternalGear | InternalGear
+    gear: ExternalGear | InternalGear,
+    steel: GearGrade,
+    settings: ActuatorSettings,
+    *mates: ExternalGear | InternalGear,
+    crowning_um: float = 0.0,
 ) -> ToothMaking | None:
     """Return how a rated gear is made, and its mates; None under the rules of the paper, and for arrays."""
     if settings.rules == "paper" or np.ndim(gear.teeth):
@@ -339,6 +343,7 @@ def rated_teeth(
         flank_rz_um=data.flank_roughness_um,
         root_rz_um=data.root_roughness_um,
         runout_mm=1e-3 * float(np.floor(runout)),
+        crowning_um=crowning_um,
     )
 
 

@@ -47,7 +47,7 @@ def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
     """Build a planet, recessed on both faces between hub and rim where there is room for it."""
     data = settings.parts.gears
     gears = at.gears
-    shape = gears.planet(settings.tooth_thinning_mm(gears.module_mm))
+    shape = gears.planet()
     bore = 0.5 * settings.planet_bore_mm
     hub = bore + data.planet_hub_wall_mm
     rim = shape.root_radius_mm - _RIM_TOOTH_DEPTHS * (ADDENDUM + DEDENDUM) * gears.module_mm
@@ -82,8 +82,17 @@ def _planet(at: Layout, settings: ActuatorSettings) -> Part:
         prisms=planet_prisms(at, settings),
         group=Group.PLANET,
         features=(bored(bore, at.z_gear_back, at.z_gear_front, enters="both", pressed=bushes),),
-        teeth=made(rated_teeth(gears.planet(), steel, settings, gears.sun(), gears.ring())),
-        note=_planet_note(gears.planet(settings.tooth_thinning_mm(gears.module_mm)), settings),
+        teeth=made(
+            rated_teeth(
+                gears.planet(),
+                steel,
+                settings,
+                gears.sun(),
+                gears.ring(),
+                crowning_um=settings.parts.rating.planet_crowning_um,
+            )
+        ),
+        note=_planet_note(gears.planet(), settings),
         fits=planet_fits(settings),
         joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush") if bushes else None,
         count=gears.planets,
@@ -138,7 +147,7 @@ def _pins(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
 
 def _ring(at: Layout, settings: ActuatorSettings) -> Part:
     gears, steel = at.gears, settings.gear_steels.ring
-    teeth = gears.ring(settings.tooth_thinning_mm(gears.module_mm))
+    teeth = gears.ring()
     return gear_part(settings, steel)(
         name="ring",
         prisms=slab(at.z_gear_back, at.z_gear_front, at.r_ring, teeth),

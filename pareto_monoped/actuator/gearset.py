@@ -4,13 +4,14 @@ load.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.gears import DEDENDUM, PRESSURE_ANGLE_RAD, ExternalGear, InternalGear, involute
+from pareto_monoped.geometry.making import RATED_SERIES, thickness_tolerance_mm
 from pareto_monoped.geometry.shapes import Floats, Numbers
 
 
@@ -23,8 +24,21 @@ class _Shifts(NamedTuple):
     ring: Numbers
 
 
+class _Cuts(NamedTuple):
+    """By how much tips are cut short, in modules."""
+
+    sun: Numbers
+    planet: Numbers
+    ring: Numbers
+
+
 _COUNTS, _SHIFTS = ("sun_teeth", "planet_teeth", "ring_teeth", "module_mm", "planets"), ("centre_shift", "sun_shift")
 _UNSHIFTED = _Shifts(PRESSURE_ANGLE_RAD, PRESSURE_ANGLE_RAD, 0.0, 0.0)
+FORM_MARGIN_MODULES = 0.02
+"""From where a flank begins, or ends in a ring, to where its mate's tip reaches, along the radius: our own choice."""
+CENTRE_TOLERANCE_MM = 0.022
+"""By how much a planet's axis may be off its place along the radius: 0.010 by the zone of the pins' holes, Ø0.02, and
+0.012 by half the greatest play of needles between F7 and m6."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,7 +58,11 @@ class GearSet:
     planets: Numbers  #: n_p
     centre_shift: Numbers = 0.0  #: y, by how much the centre distance exceeds m (Ns + Np) / 2
     sun_shift: Numbers = 0.0  #: x of the sun
+    backlash_mm: Numbers = 0.0  #: by how much every tooth is thinner on its reference circle
+    #: Whether tips are cut so short that none reaches into a mate's root, see ``_fitted``; not under ``paper``
+    tips_fitted: bool = False
     _shifts: _Shifts = field(init=False, repr=False, compare=False)
+    _cuts: _Cuts = field(init=False, repr=False, compare=False)
 
     @property
     def ratio(self) -> Numbers:
@@ -62,8 +80,13 @@ class GearSet:
         return bool(np.any(self.centre_shift) or np.any(self.sun_shift))
 
     def __post_init__(self) -> None:
-        """Work out once what follows from the shifts; arrays ask for it many times."""
+        """Work out once what follows from shifts and backlash; arrays ask for it many times."""
         object.__setattr__(self, "_shifts", _shifts(self) if self.is_shifted else _UNSHIFTED)
+        # The tips of sun and planets keep the clearance of the basic rack.
+        kept = self.sun_shift + self.planet_shift - self.centre_shift
+        object.__setattr__(self, "_cuts", _Cuts(kept, kept, 0.0))
+        if self.tips_fitted:
+            object.__setattr__(self, "_cuts", _fitted(self))
 
     @property
     def working_angle_rad(self) -> Numbers:
@@ -86,11 +109,6 @@ class GearSet:
         return self._shifts.ring
 
     @property
-    def tip_shortening(self) -> Numbers:
-        """By how much the tips of sun and planets are cut short, to keep the clearance of the basic rack."""
-        return self.sun_shift + self.planet_shift - self.centre_shift
-
-    @property
     def ring_root_radius_mm(self) -> Numbers:
         """Radius of the bottoms of the ring's tooth spaces."""
         return self.module_mm * (0.5 * self.ring_teeth + DEDENDUM + self.ring_shift)
@@ -100,35 +118,36 @@ class GearSet:
         """Radius of the ring's pitch circle."""
         return 0.5 * self.module_mm * self.ring_teeth
 
-    def sun(self, backlash_mm: Numbers = 0.0) -> ExternalGear:
+    def sun(self) -> ExternalGear:
         """Return the cross-section of the sun, a tooth on the x axis."""
         return ExternalGear(
             teeth=self.sun_teeth,
             module_mm=self.module_mm,
-            backlash_mm=backlash_mm,
+            backlash_mm=self.backlash_mm,
             shift=self.sun_shift,
-            tip_shortening=self.tip_shortening,
+            tip_shortening=self._cuts.sun,
         )
 
-    def planet(self, backlash_mm: Numbers = 0.0) -> ExternalGear:
+    def planet(self) -> ExternalGear:
         """Return the cross-section of the planet that sits on the x axis, with a tooth space towards the sun."""
         return ExternalGear(
             teeth=self.planet_teeth,
             module_mm=self.module_mm,
-            backlash_mm=backlash_mm,
+            backlash_mm=self.backlash_mm,
             phase_rad=np.pi - np.pi / self.planet_teeth,
             shift=self.planet_shift,
-            tip_shortening=self.tip_shortening,
+            tip_shortening=self._cuts.planet,
         )
 
-    def ring(self, backlash_mm: Numbers = 0.0) -> InternalGear:
+    def ring(self) -> InternalGear:
         """Return the toothed hole of the ring, with a space where the first planet has a tooth."""
         return InternalGear(
             teeth=self.ring_teeth,
             module_mm=self.module_mm,
-            backlash_mm=backlash_mm,
+            backlash_mm=self.backlash_mm,
             phase_rad=np.pi * (self.planet_teeth - 1.0) / self.ring_teeth,
             shift=self.ring_shift,
+            tip_shortening=self._cuts.ring,
         )
 
     def chosen(self, index: int) -> "GearSet":
@@ -139,17 +158,26 @@ class GearSet:
             ring_teeth=int(np.asarray(self.ring_teeth)[index]),
             module_mm=float(np.asarray(self.module_mm)[index]),
             planets=int(np.asarray(self.planets)[index]),
+            backlash_mm=float(self._spread(self.backlash_mm)[index]),
+            tips_fitted=self.tips_fitted,
             **{name: float(self._spread(getattr(self, name))[index]) for name in _SHIFTS},
         )
 
     def where(self, mask: NDArray[np.bool_] | NDArray[np.intp]) -> "GearSet":
         """Return the sets at a mask or at indices."""
-        teeth = {name: np.asarray(getattr(self, name))[mask] for name in _COUNTS}
-        shifts = {name: self._spread(getattr(self, name))[mask] if self.is_shifted else 0.0 for name in _SHIFTS}
-        return GearSet(**teeth, **shifts)
+        teeth: dict[str, Any] = {name: np.asarray(getattr(self, name))[mask] for name in _COUNTS}
+        shifts: dict[str, Any] = {
+            name: self._spread(getattr(self, name))[mask] if self.is_shifted else 0.0 for name in _SHIFTS
+        }
+        backlash = self._spread(self.backlash_mm)[mask] if np.ndim(self.backlash_mm) else self.backlash_mm
+        some = GearSet(**teeth, **shifts, backlash_mm=backlash)
+        if self.tips_fitted:  # known already, and dear
+            object.__setattr__(some, "tips_fitted", True)
+            object.__setattr__(some, "_cuts", _Cuts(*(self._spread(cut)[mask] for cut in self._cuts)))
+        return some
 
     def _spread(self, value: Numbers) -> Floats:
-        """Return a shift as an array of the sets' shape."""
+        """Return a number as an array of the sets' shape."""
         return np.broadcast_to(np.asarray(value, dtype=np.float64), np.shape(self.sun_teeth))
 
     def shifted(self, centre_shift: float, sun_shift: float) -> "GearSet":
@@ -172,9 +200,9 @@ def joined(sets: Sequence[GearSet]) -> GearSet:
             [np.atleast_1d(np.broadcast_to(getattr(one, each.name), np.shape(one.sun_teeth))) for one in sets]
         ).astype(np.float64)
         for each in fields(GearSet)
-        if each.init
+        if each.init and each.name != "tips_fitted"
     }
-    return GearSet(**columns)
+    return GearSet(**columns, tips_fitted=sets[0].tips_fitted)
 
 
 def _shifts(gears: GearSet) -> _Shifts:
@@ -189,6 +217,49 @@ def _shifts(gears: GearSet) -> _Shifts:
     ring_angle = angle if np.array_equal(both, difference) else working(difference)
     planet = both * _shift_per_tooth(angle) - gears.sun_shift
     return _Shifts(angle, ring_angle, planet, planet + difference * _shift_per_tooth(ring_angle))
+
+
+def _fitted(gears: GearSet) -> _Cuts:
+    """Return how short tips must be to meet flanks only, at the worst place of a planet's axis.
+
+    Where a tip meets its mate is a length along the tangent to both base circles (ISO 21771). With the lengths from
+    each base circle's point to a radius r, t(r) = sqrt(r^2 - r_b^2), and l between both points, which the centre
+    distance gives: t1 + t2 <= l for a tip of 1 in the root of 2, and t_planet + l <= t_ring at the ring.
+    """
+    module, sun, planet, ring = gears.module_mm, gears.sun(), gears.planet(), gears.ring()
+    margin = FORM_MARGIN_MODULES * module
+    far, near = gears.carrier_radius_mm + CENTRE_TOLERANCE_MM, gears.carrier_radius_mm - CENTRE_TOLERANCE_MM
+    outer = _tangent_mm(near, sun.base_radius_mm + planet.base_radius_mm)
+    inner = _tangent_mm(far, ring.base_radius_mm - planet.base_radius_mm)
+    sun_begins = _tangent_mm(_begins_mm(sun) + margin, sun.base_radius_mm)
+    planet_begins = _tangent_mm(_begins_mm(planet) + margin, planet.base_radius_mm)
+    ring_ends = _tangent_mm(ring.form_radius_mm - margin, ring.base_radius_mm)
+    sun_tip = np.minimum(sun.tip_radius_mm, np.hypot(sun.base_radius_mm, np.maximum(outer - planet_begins, 0.0)))
+    reach = np.maximum(np.minimum(outer - sun_begins, ring_ends - inner), 0.0)
+    planet_tip = np.minimum(planet.tip_radius_mm, np.hypot(planet.base_radius_mm, reach))
+    ring_tip = np.maximum(ring.tip_radius_mm, np.hypot(ring.base_radius_mm, planet_begins + inner))
+    return _Cuts(
+        sun.tip_shortening + (sun.tip_radius_mm - sun_tip) / module,
+        planet.tip_shortening + (planet.tip_radius_mm - planet_tip) / module,
+        (ring_tip - ring.tip_radius_mm) / module,
+    )
+
+
+def _begins_mm(gear: ExternalGear) -> Numbers:
+    """Return the radius from which on every tooth within its tolerance has a flank.
+
+    A rack that is fed farther in leaves more of the flank, until it cuts it away from below; the end of its straight
+    flank then bounds how far.
+    """
+    tolerance = thickness_tolerance_mm(2.0 * gear.pitch_radius_mm, RATED_SERIES)
+    thinnest = replace(gear, backlash_mm=gear.backlash_mm + tolerance)
+    return np.maximum(gear.straight_end_mm, thinnest.straight_end_mm)
+
+
+def _tangent_mm(radius_mm: Numbers, base_mm: Numbers) -> Numbers:
+    """Return the length of the tangent to a circle of radius ``base_mm`` that ends at a radius; 0 inside."""
+    length_mm: Numbers = np.sqrt(np.maximum(np.square(radius_mm) - np.square(base_mm), 0.0))
+    return length_mm
 
 
 def _shift_per_tooth(working_angle_rad: Numbers) -> Numbers:
@@ -210,8 +281,7 @@ def contact_ratios(gears: GearSet) -> tuple[Numbers, Numbers]:
 def _tip_reach_mm(gear: ExternalGear | InternalGear) -> Numbers:
     """Return the length of the tangent to the base circle that ends on the tip circle."""
     # The tips of a small ring may lie inside its base circle; the rules refuse such a ring.
-    length_mm: Numbers = np.sqrt(np.maximum(np.square(gear.tip_radius_mm) - np.square(gear.base_radius_mm), 0.0))
-    return length_mm
+    return _tangent_mm(gear.tip_radius_mm, gear.base_radius_mm)
 
 
 def efficiency(gears: GearSet, friction: float) -> Numbers:

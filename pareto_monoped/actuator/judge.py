@@ -57,7 +57,13 @@ def candidates(room_mm: float, settings: ActuatorSettings) -> GearSet:
             sets.append((sun[keep], planet[keep], ring[keep], np.full(shape, module), np.full(shape, planets)))
     columns = [np.concatenate(column).astype(np.float64) for column in zip(*sets, strict=True)]
     gears = GearSet(
-        sun_teeth=columns[0], planet_teeth=columns[1], ring_teeth=columns[2], module_mm=columns[3], planets=columns[4]
+        sun_teeth=columns[0],
+        planet_teeth=columns[1],
+        ring_teeth=columns[2],
+        module_mm=columns[3],
+        planets=columns[4],
+        backlash_mm=settings.tooth_thinning_mm(columns[3]),
+        tips_fitted=settings.rules == "iso6336",
     )
     return _with_shifts(gears, room_mm, settings)
 

@@ -1,8 +1,7 @@
 """The rules that a gear set must obey: the paper's, and those that engineering adds, each with its source."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import KW_ONLY, dataclass
-from functools import reduce
+from dataclasses import KW_ONLY, dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +14,7 @@ from pareto_monoped.actuator.rating.width import strength_margins
 from pareto_monoped.actuator.service.loads import output_margin, planet_margin
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.design import RULE_SETS, ConstraintName, RuleSet
-from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, PRESSURE_ANGLE_RAD, fillet_room_rad
+from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, PRESSURE_ANGLE_RAD, ExternalGear
 from pareto_monoped.geometry.shapes import Numbers
 
 TOLERANCE_MM = 1e-9
@@ -63,7 +62,7 @@ def _no_interference(sets: CandidateSets) -> Numbers:
     gears = sets.gears
     reach = 4.0 * gears.carrier_radius_mm * np.sin(np.pi / gears.planets)
     # Tips that shifts move outwards count like a larger pitch circle.
-    shifted = 4.0 * gears.module_mm * (gears.planet_shift - gears.tip_shortening)
+    shifted = 4.0 * gears.module_mm * (gears.planet_shift - gears.planet().tip_shortening)
     return reach - 2.0 * gears.module_mm * gears.planet_teeth - shifted - sets.settings.planet_gap_mm
 
 
@@ -81,8 +80,7 @@ def _tip_thickness(sets: CandidateSets) -> Numbers:
     least = sets.settings.parts.rating.tip_thickness_modules
 
     def margin(gears: GearSet) -> Numbers:
-        backlash = sets.settings.tooth_thinning_mm(gears.module_mm)
-        thinnest = np.minimum(gears.sun(backlash).tip_thickness_mm, gears.planet(backlash).tip_thickness_mm)
+        thinnest = np.minimum(gears.sun().tip_thickness_mm, gears.planet().tip_thickness_mm)
         return thinnest - least * gears.module_mm
 
     return _of_shifted(sets.gears, margin)
@@ -90,9 +88,7 @@ def _tip_thickness(sets: CandidateSets) -> Numbers:
 
 def _root_fillet(sets: CandidateSets) -> Numbers:
     def margin(gears: GearSet) -> Numbers:
-        backlash = sets.settings.tooth_thinning_mm(gears.module_mm)
-        shapes = (gears.sun(backlash), gears.planet(backlash), gears.ring(backlash))
-        return reduce(np.minimum, (shape.root_radius_mm * fillet_room_rad(shape) for shape in shapes))
+        return gears.ring_root_radius_mm * gears.ring().fillet_angle_rad
 
     return _of_shifted(sets.gears, margin)
 
@@ -115,12 +111,17 @@ def _sun_rim(sets: CandidateSets) -> Numbers:
     if sets.family == "ISSPG":
         return np.zeros(np.shape(sets.gears.sun_teeth))
     bore = 0.5 * sets.settings.parts.gears.sun_bore_mm
-    return sets.gears.sun().root_radius_mm - bore - 1.2 * (ADDENDUM + DEDENDUM) * sets.gears.module_mm
+    return _root_mm(sets, sets.gears.sun()) - bore - 1.2 * (ADDENDUM + DEDENDUM) * sets.gears.module_mm
 
 
 def _planet_rim(sets: CandidateSets) -> Numbers:
     bore = 0.5 * sets.settings.planet_bore_mm
-    return sets.gears.planet().root_radius_mm - bore - 1.2 * (ADDENDUM + DEDENDUM) * sets.gears.module_mm
+    return _root_mm(sets, sets.gears.planet()) - bore - 1.2 * (ADDENDUM + DEDENDUM) * sets.gears.module_mm
+
+
+def _root_mm(sets: CandidateSets, gear: ExternalGear) -> Numbers:
+    """Return the radius of the roots; the rules of the paper count them as deep as without backlash."""
+    return replace(gear, backlash_mm=0.0).root_radius_mm if sets.settings.rules == "paper" else gear.root_radius_mm
 
 
 def _ring_interference(sets: CandidateSets) -> Numbers:

@@ -134,7 +134,7 @@ def build_robot(
     Example:
         >>> from pareto_monoped import PAPER_CASES, build_robot
         >>> round(build_robot(PAPER_CASES["C"].design).mass_kg, 1)
-        4.8
+        4.5
     """
     maps = joint_maps_of(motor, hip_motor, knee_motor, rules)
     return robot_of(one_design(design, maps), maps)
@@ -179,7 +179,7 @@ def simulate(
         >>> from pareto_monoped import PAPER_CASES, simulate
         >>> jump = simulate(PAPER_CASES["C"].design)
         >>> print(jump.status[0], f"{jump.height_m[0]:.2f} m")
-        ok 1.05 m
+        ok 1.06 m
     """
     model, chosen = calibrated(calibration, rules)
     maps = joint_maps_of(motor, hip_motor, knee_motor, chosen)
@@ -238,7 +238,7 @@ def trace(
         >>> from pareto_monoped import PAPER_CASES, trace
         >>> steps = trace(PAPER_CASES["C"].design)
         >>> print(f"{steps.base_z_m.max():.2f} m")
-        1.05 m
+        1.06 m
     """
     import pandas as pd
 

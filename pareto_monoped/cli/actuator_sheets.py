@@ -34,6 +34,7 @@ def print_gear_sheet(console: "Console", rating: "Rating", settings: "ActuatorSe
         ("accuracy", f"ISO 1328-1 class {data.accuracy_class}"),
         ("highest level", f"{rating.highest_share:g} times the peak torque, to which the limits refer"),
         ("gap of the planets", f"{rating.planet_gap_mm:.3f} mm between their tips"),
+        ("crowning", f"{data.planet_crowning_um:g} um, of the planets"),
         ("K_gamma", f"AGMA 6123, sun {data.sun_support}"),
         *((one.gear, f"{one.steel}, {one.quality}, {one.hardness_hv:g} HV") for one in steels.values()),
         ("equal to 1", "Z_beta, Z_X, Y_beta, Y_DT, Y_X, Y_epsilon (method B)"),
@@ -92,6 +93,7 @@ def _stresses(gears: "list[GearRating]", settings: "ActuatorSettings") -> "Table
     data = settings.parts.rating
     rows: Iterable[tuple[str, Callable[[GearRating], float], str]] = (
         ("tip diameter d_a, mm", lambda gear: gear.tip_diameter_mm, ".3f"),
+        ("form diameter d_Ff, mm", lambda gear: gear.form_diameter_mm, ".3f"),
         ("root diameter d_f, mm", lambda gear: gear.root_diameter_mm, ".3f"),
         ("tip thickness s_a, mm", lambda gear: gear.tip_thickness_mm, ".3f"),
         ("", lambda gear: 0.0, ""),

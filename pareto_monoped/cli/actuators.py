@@ -270,6 +270,7 @@ def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "Servi
         ("rotor inertia", f"{1e6 * actuator.motor.rotor_inertia_kg_m2:.2f} kg mm2, of the motor alone"),
         ("contact ratios", f"{actuator.contact_ratio_sun:.2f} sun, {actuator.contact_ratio_ring:.2f} ring"),
         *_shift_lines(actuator.gears),
+        *_tip_lines(known["tips_in_roots_mm"]),
         ("face width, length", f"{actuator.face_width_mm:.2f} mm, {actuator.length_mm:.1f} mm"),
         *service_lines(sheet, actuator_map.settings),
     ):
@@ -286,6 +287,12 @@ def _print_details(actuator_map: "ActuatorMap", entry: "MapEntry", sheet: "Servi
     console.print(_parts_table(known["parts"], actuator.mass_kg))
     for line in _rivals(actuator.family, known):
         console.print(line, markup=False)
+
+
+def _tip_lines(depths_mm: dict[str, float]) -> list[tuple[str, str]]:
+    """Return which tips reach into roots, as those of the rules ``paper`` may: such teeth jam, or wear each other."""
+    found = [f"{names} {1e3 * depth:.1f} um deep" for names, depth in depths_mm.items() if depth > 0.0]
+    return [("tips in roots", f"{', '.join(found)}; rules iso6336 cut them short")] if found else []
 
 
 def _torque_lines(actuator: "Actuator") -> list[tuple[str, str]]:

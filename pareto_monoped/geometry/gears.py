@@ -1,17 +1,27 @@
-"""Cross-sections of spur gears with involute flanks, with exact areas and polar moments.
+"""Cross-sections of spur gears as their cutters make them, with exact areas and polar moments.
 
-Millimetres. Proportions of the basic rack ISO 53: addendum 1.0 m, dedendum 1.25 m, fillet 0.38 m, pressure angle 20
-degrees. Every number may be an array of shape (n,), so the same formula weighs one gear or all candidates.
+Millimetres. Every number may be an array of shape (n,), so the same formula weighs one gear or all candidates.
+
+Sun and planet are cut by the rack ISO 53: addendum 1.0 m, dedendum 1.25 m, tip rounding 0.38 m, pressure angle 20
+degrees. Thinner teeth are cut deeper: the rack is fed by A / (2 tan(alpha)) farther in, which makes the generating
+shift x_E = x - A / (2 m tan(alpha)) (ISO 21771). Rings are wire-cut along the drawn curve: roots are arcs of 0.38 m.
 
 The half angle of a tooth at radius r is psi(r) = pi/(2z) + inv(alpha) - inv(alpha_r) with cos(alpha_r) = r_b / r (any
-textbook on involute gears, e.g. Shigley, ch. 13); below the base circle the flanks are radial. Integrated by parts,
-with t = tan(alpha_r) and d(inv) = tan^2 d(alpha), the tooth's area and polar moment between two radii are
+textbook on involute gears, e.g. Shigley, ch. 13). Integrated by parts, with t = tan(alpha_r) and
+d(inv) = tan^2 d(alpha), the tooth's area and polar moment between two radii are
 
     area   = [psi r^2]     + r_b^2 [t^3 / 3]
     polar  = [psi r^4 / 2] + r_b^4 / 2 [t^3 / 3 + t^5 / 5]
 
 A profile shift of x modules moves the teeth outwards by x m, in an internal gear too; psi grows by 2 x tan(alpha) / z
 (ISO 21771).
+
+The root of sun and planet is what the rack's rounded tip leaves. The common normal at the point where it cuts goes
+through the pitch point. Let theta be its angle from the line of centres, from 0 at the bottom to 90 degrees - alpha,
+where the rounding ends and the straight flank begins. With the depth h of the rounding's centre below the pitch line,
+the point cut is (h / cos(theta) + rho) (sin(theta), -cos(theta)) from the pitch point. The gear has then turned by
+(h tan(theta) - e) / r since the rack's tooth, whose rounding has its centre e off the middle, stood in the middle of
+the space (Litvin, Gear Geometry and Applied Theory, ch. 6, has the same curve).
 """
 
 from dataclasses import dataclass
@@ -37,87 +47,119 @@ def involute(angle_rad: Numbers) -> Numbers:
     return np.tan(angle_rad) - angle_rad
 
 
-def half_angle(gear: "ExternalGear | InternalGear", radius_mm: Numbers, thinning_mm: Numbers) -> NDArray[np.float64]:
-    """Half angle psi in rad of a tooth at a radius; teeth are thinner by ``thinning_mm`` on the reference circle."""
-    module, teeth, angle = _array(gear.module_mm), _array(gear.teeth), gear.pressure_angle_rad
-    base = 0.5 * module * teeth * np.cos(angle)
-    tangent = np.sqrt(np.maximum(np.square(radius_mm / base) - 1.0, 0.0))
-    unwound = tangent - np.arctan(tangent)
-    pitch = np.pi / (2.0 * teeth) - _array(thinning_mm) / (module * teeth)
-    pitch = pitch + 2.0 * _array(gear.shift) * np.tan(angle) / teeth
-    return np.asarray(pitch + np.tan(angle) - angle - unwound)
+def half_angle(gear: "ExternalGear | InternalGear", radius_mm: Numbers) -> NDArray[np.float64]:
+    """Half angle psi in rad of a tooth, or of a ring's space, at a radius; below the base circle as on it."""
+    teeth, tangent = _array(gear.teeth), np.tan(gear.pressure_angle_rad)
+    pitch = (0.5 * np.pi + 2.0 * _array(gear.generating_shift) * tangent) / teeth
+    roll = _roll(gear, radius_mm)
+    return np.asarray(pitch + involute(gear.pressure_angle_rad) - (roll - np.arctan(roll)))
 
 
-def _teeth_area_mm2(
-    gear: "ExternalGear | InternalGear", low_mm: Numbers, high_mm: Numbers, thinning_mm: Numbers
-) -> Numbers:
-    """Area of all teeth between two radii."""
+def _roll(gear: "ExternalGear | InternalGear", radius_mm: Numbers) -> NDArray[np.float64]:
+    """Tangent of the pressure angle at a radius."""
+    return np.asarray(np.sqrt(np.maximum(np.square(radius_mm / _array(gear.base_radius_mm)) - 1.0, 0.0)))
+
+
+def _between_mm(gear: "ExternalGear | InternalGear", low_mm: Numbers, high_mm: Numbers) -> tuple[Numbers, Numbers]:
+    """Area and polar moment of all teeth, or of a ring's spaces, between two radii."""
     area: Numbers = 0.0
-    for sign, radius in ((1.0, _array(high_mm)), (-1.0, _array(low_mm))):
-        psi, t, base = _flank(gear, radius, thinning_mm)
-        area = area + sign * (psi * radius**2 + base**2 * t**3 / 3.0)
-    return gear.teeth * area
-
-
-def _teeth_polar_mm4(
-    gear: "ExternalGear | InternalGear", low_mm: Numbers, high_mm: Numbers, thinning_mm: Numbers
-) -> Numbers:
-    """Polar moment of all teeth between two radii."""
     polar: Numbers = 0.0
-    for sign, radius in ((1.0, _array(high_mm)), (-1.0, _array(low_mm))):
-        psi, t, base = _flank(gear, radius, thinning_mm)
-        polar = polar + sign * (0.5 * psi * radius**4 + 0.5 * base**4 * (t**3 / 3.0 + t**5 / 5.0))
-    return gear.teeth * polar
-
-
-def _flank(
-    gear: "ExternalGear | InternalGear", radius_mm: NDArray[np.float64], thinning_mm: Numbers
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Half angle of a tooth at a radius, the tangent of the pressure angle there, and the base circle's radius."""
     base = _array(gear.base_radius_mm)
-    psi = half_angle(gear, radius_mm, thinning_mm)
-    # Below the base circle psi stays what it is there, so psi r^2 is right and the tangent terms vanish.
-    return psi, np.sqrt(np.maximum(np.square(radius_mm / base) - 1.0, 0.0)), base
+    for sign, radius in ((1.0, _array(high_mm)), (-1.0, _array(low_mm))):
+        psi, t = half_angle(gear, radius), _roll(gear, radius)
+        area = area + sign * (psi * radius**2 + base**2 * t**3 / 3.0)
+        polar = polar + sign * (0.5 * psi * radius**4 + 0.5 * base**4 * (t**3 / 3.0 + t**5 / 5.0))
+    return gear.teeth * area, gear.teeth * polar
 
 
-def _fillets_mm2(gear: "ExternalGear | InternalGear", root_mm: Numbers, outwards: float) -> Numbers:
-    """Area of the rounded corners between flanks and root circle, two per tooth.
+def _generated(
+    teeth: Numbers, shift: Numbers, theta_rad: Numbers, pressure_angle_rad: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Point of a root that the rack cuts, in modules from the gear's axis: along the middle of the space, and across.
+
+    ``shift`` is the generating one, ``theta_rad`` as in the module's text.
+    """
+    depth, rolled = DEDENDUM - FILLET - shift, 0.5 * _array(teeth)
+    across, along = depth * np.tan(theta_rad) + FILLET * np.sin(theta_rad), rolled - depth - FILLET * np.cos(theta_rad)
+    turned = (depth * np.tan(theta_rad) - rounding_off_middle(pressure_angle_rad)) / rolled
+    cos, sin = np.cos(turned), np.sin(turned)
+    return along * cos + across * sin, across * cos - along * sin
+
+
+def rounding_off_middle(angle: float) -> float:
+    """Distance of the centre of the rack's tip rounding from the middle of its tooth, in modules."""
+    return float(0.25 * np.pi - DEDENDUM * np.tan(angle) - FILLET * (1.0 - np.sin(angle)) / np.cos(angle))
+
+
+def _root_end_rad(teeth: Numbers, shift: Numbers, angle: float) -> NDArray[np.float64]:
+    """Angle theta where the root goes over into the involute: the end of the rounding, or before it if undercut."""
+    teeth, shift = np.broadcast_arrays(_array(teeth), _array(shift))
+    end = np.full(teeth.shape, 0.5 * np.pi - angle)
+    straight = DEDENDUM - FILLET * (1.0 - np.sin(angle)) - shift  # depth of the straight flank below the pitch line
+    undercut = straight > 0.5 * teeth * np.square(np.sin(angle))
+    if undercut.any():
+        z, x, low, high = teeth[undercut], shift[undercut], np.zeros(int(undercut.sum())), end[undercut]
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            along, across = _generated(z, x, middle, angle)
+            tangent = np.square(np.hypot(along, across) / (0.5 * z * np.cos(angle))) - 1.0
+            flank = np.sqrt(np.maximum(tangent, 0.0))
+            space = (0.5 * np.pi - 2.0 * x * np.tan(angle)) / z - (np.tan(angle) - angle) + flank - np.arctan(flank)
+            inside = (tangent < 0.0) | (np.arctan2(across, along) > space)
+            low, high = np.where(inside, middle, low), np.where(inside, high, middle)
+        end[undercut] = low
+    return end
+
+
+_HALVINGS = 30
+"""Of the interval in which the root of an undercut tooth meets the flank: to a millionth of a micrometre."""
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+"""Along a root's curve; its integrals then have 10 digits or more for 12 teeth and up."""
+
+
+def _below_mm(gear: "ExternalGear") -> tuple[Numbers, Numbers]:
+    """Area and polar moment of a gear inside the lines from its axis to the form circle's points of its teeth."""
+    teeth, module, angle = _array(gear.teeth), _array(gear.module_mm), gear.pressure_angle_rad
+    shift = gear.generating_shift
+    end = _root_end_rad(teeth, shift, angle)
+    depth = DEDENDUM - FILLET - shift
+    bottom = 0.5 * teeth - DEDENDUM + shift
+    area = np.square(bottom) * rounding_off_middle(angle) / (0.5 * teeth)
+    polar = area * np.square(bottom) / 2.0
+    for node, weight in zip(_NODES, _WEIGHTS, strict=True):
+        theta = 0.5 * end * (1.0 + node)
+        opened = depth / np.square(np.cos(theta))
+        across = depth * np.tan(theta) + FILLET * np.sin(theta)
+        along = 0.5 * teeth - depth - FILLET * np.cos(theta)
+        squared = np.square(across) + np.square(along)
+        # Of the squared distance times the angle: the point's own motion, less the gear's turn.
+        swept = along * (opened + FILLET * np.cos(theta)) - across * FILLET * np.sin(theta)
+        swept = swept - squared * opened / (0.5 * teeth)
+        area, polar = area + 0.5 * end * weight * swept, polar + 0.25 * end * weight * swept * squared
+    along, across = _generated(teeth, shift, end, angle)
+    form, half = np.square(along) + np.square(across), np.pi / teeth - np.arctan2(across, along)
+    area, polar = area + form * half, polar + 0.5 * np.square(form) * half
+    return teeth * area * np.square(module), teeth * polar * np.square(np.square(module))
+
+
+def _ring_fillets_mm2(gear: "InternalGear", root_mm: Numbers) -> Numbers:
+    """Area of the rounded corners between flanks and root circle of a ring, two per tooth.
 
     Exact for radial flanks: the fillet's centre lies rho off the root circle, and rho off the flank. Where the flank is
     an involute it leans by the pressure angle there; a corner of angle theta with straight sides keeps
     rho^2 (cot(theta/2) - (pi - theta)/2) filled, and the exact area is scaled by the proportion of that to the right
     angle's, with the lean taken half way up the fillet. Within 6 percent of a drawn fillet, 2e-4 of a gear's area.
-
-    Args:
-        gear: which gear.
-        root_mm: radius of the root circle.
-        outwards: 1 if the spaces lie outside the root circle (external gear), -1 if inside.
     """
     rho, root = FILLET * _array(gear.module_mm), _array(root_mm)
-    centre = root + outwards * rho
+    centre = root - rho
     beta = np.arcsin(rho / centre)
-    triangle = 0.5 * rho * np.sqrt(centre**2 - rho**2)
-    radial = outwards * (triangle - 0.5 * root**2 * beta) - 0.5 * rho**2 * (0.5 * np.pi - outwards * beta)
+    radial = 0.5 * root**2 * beta - 0.5 * rho * np.sqrt(centre**2 - rho**2) - 0.5 * rho**2 * (0.5 * np.pi + beta)
 
     def straight(theta: Numbers) -> Numbers:
         return 1.0 / np.tan(0.5 * theta) - 0.5 * (np.pi - theta)
 
-    half_way = root + 0.5 * outwards * rho
-    lean = np.arccos(np.minimum(_array(gear.base_radius_mm) / half_way, 1.0))
+    lean = np.arccos(np.minimum(_array(gear.base_radius_mm) / (root - 0.5 * rho), 1.0))
     return 2.0 * gear.teeth * radial * straight(0.5 * np.pi + lean) / straight(0.5 * np.pi)
-
-
-def fillet_room_rad(gear: "ExternalGear | InternalGear") -> Numbers:
-    """Half the angle that is left of the root circle between two fillets; negative where they do not fit."""
-    rho, base = FILLET * _array(gear.module_mm), _array(gear.base_radius_mm)
-    inner = isinstance(gear, InternalGear)
-    centre = gear.root_radius_mm - rho if inner else gear.root_radius_mm + rho
-    psi = half_angle(gear, centre, -_array(gear.backlash_mm) if inner else gear.backlash_mm)
-    if inner:
-        return psi - rho / base
-    # A fillet that ends below the base circle touches a radial line there.
-    on_involute = np.square(centre) >= np.square(base) + np.square(rho)
-    return np.pi / _array(gear.teeth) - psi - np.where(on_involute, rho / base, np.arcsin(rho / centre))
 
 
 def _round_moments(area: Numbers, polar: Numbers) -> Moments:
@@ -134,6 +176,7 @@ class _Teeth:
     phase_rad: Numbers = 0.0  # angle of the middle of one tooth, or of one space of a ring, from the x axis
     pressure_angle_rad: float = PRESSURE_ANGLE_RAD
     shift: Numbers = 0.0  # profile shift x over module, positive outwards
+    tip_shortening: Numbers = 0.0  # by how much the tips are cut short, over module
 
     @property
     def pitch_radius_mm(self) -> Numbers:
@@ -146,12 +189,21 @@ class _Teeth:
         radius_mm: Numbers = self.pitch_radius_mm * np.cos(self.pressure_angle_rad)
         return radius_mm
 
+    @property
+    def _thinning_shift(self) -> Numbers:
+        """By how much thinner teeth change the shift: A / (2 m tan(alpha))."""
+        shift: Numbers = 0.5 * self.backlash_mm / (self.module_mm * np.tan(self.pressure_angle_rad))
+        return shift
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExternalGear(_Teeth):
     """A spur gear without its bore: sun or planet."""
 
-    tip_shortening: Numbers = 0.0  # by how much the tips are cut short, over module
+    @property
+    def generating_shift(self) -> Numbers:
+        """Shift x_E at which the rack cuts the teeth, over module."""
+        return self.shift - self._thinning_shift
 
     @property
     def tip_radius_mm(self) -> Numbers:
@@ -161,24 +213,49 @@ class ExternalGear(_Teeth):
     @property
     def root_radius_mm(self) -> Numbers:
         """Circle at the bottom of the tooth spaces."""
-        return self.pitch_radius_mm - (DEDENDUM - self.shift) * self.module_mm
+        return self.pitch_radius_mm - (DEDENDUM - self.generating_shift) * self.module_mm
+
+    @property
+    def straight_end_mm(self) -> Numbers:
+        """Circle on which the end of the rack's straight flank cuts: the form circle, or above it if undercut."""
+        sine = np.sin(self.pressure_angle_rad)
+        depth = DEDENDUM - FILLET * (1.0 - sine) - self.generating_shift
+        radius_mm: Numbers = np.hypot(self.base_radius_mm, self.pitch_radius_mm * sine - depth * self.module_mm / sine)
+        return radius_mm
+
+    @property
+    def form_radius_mm(self) -> Numbers:
+        """Circle on which the involute begins, above the root that the rack's rounding leaves."""
+        end = _root_end_rad(self.teeth, self.generating_shift, self.pressure_angle_rad)
+        points = _generated(self.teeth, self.generating_shift, end, self.pressure_angle_rad)
+        radius_mm: Numbers = self.module_mm * np.hypot(*points)
+        return radius_mm
 
     @property
     def tip_thickness_mm(self) -> Numbers:
         """Thickness of a tooth on the tip circle, along the arc."""
         tip = self.tip_radius_mm
-        return 2.0 * tip * half_angle(self, tip, self.backlash_mm)
+        return 2.0 * tip * half_angle(self, tip)
+
+    def root_curve_mm(self, count: int) -> NDArray[np.float64]:
+        """Return points from the bottom of a space to the form circle, shape (count, 2); of a gear of plain numbers.
+
+        The space's middle is the x axis; the root circle goes on to the other side of it. Evenly spaced.
+        """
+        shift, angle = self.generating_shift, self.pressure_angle_rad
+        theta = float(_root_end_rad(self.teeth, shift, angle)) * np.linspace(0.0, 1.0, 50 * count)
+        points = np.stack(_generated(self.teeth, shift, theta, angle), axis=1)
+        along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+        even = np.interp(np.linspace(0.0, along[-1], count), along, theta)
+        return float(np.asarray(self.module_mm)) * np.stack(_generated(self.teeth, shift, even, angle), axis=1)
 
     def area_mm2(self) -> Numbers:
         """The first of ``moments``."""
         return _area_mm2(self)
 
     def moments(self) -> Moments:
-        """Exact for the teeth and the root disc; for the fillets see ``_fillets_mm2``."""
-        root = self.root_radius_mm
-        polar = _teeth_polar_mm4(self, root, self.tip_radius_mm, self.backlash_mm)
-        fillets = _fillets_mm2(self, root, 1.0)
-        return _round_moments(self.area_mm2(), 0.5 * np.pi * np.square(root) ** 2 + polar + fillets * np.square(root))
+        """Exact, roots included."""
+        return _round_moments(*_external_mm(self))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -186,13 +263,18 @@ class InternalGear(_Teeth):
     """The toothed hole of a ring gear: to be taken out of the ring's disc.
 
     The hole has the outline of an external gear whose teeth are the ring's spaces: tip and root change places. The
-    profile shift is that of this gear; ISO 21771 counts it negative.
+    profile shift is that of this gear; ISO 21771 counts it negative. The root is an arc between root circle and flank.
     """
+
+    @property
+    def generating_shift(self) -> Numbers:
+        """Shift of a space that is as wide as with backlash, over module."""
+        return self.shift + self._thinning_shift
 
     @property
     def tip_radius_mm(self) -> Numbers:
         """Innermost circle, of the ring's teeth."""
-        return self.pitch_radius_mm - (ADDENDUM - self.shift) * self.module_mm
+        return self.pitch_radius_mm - (ADDENDUM - self.shift - self.tip_shortening) * self.module_mm
 
     @property
     def root_radius_mm(self) -> Numbers:
@@ -200,22 +282,53 @@ class InternalGear(_Teeth):
         return self.pitch_radius_mm + (DEDENDUM + self.shift) * self.module_mm
 
     @property
+    def fillet_mm(self) -> Numbers:
+        """Radius of the root's arcs."""
+        return FILLET * self.module_mm
+
+    @property
+    def form_radius_mm(self) -> Numbers:
+        """Circle on which the involute ends and the root's arc begins."""
+        base, centre = _array(self.base_radius_mm), self.root_radius_mm - self.fillet_mm
+        radius_mm: Numbers = np.hypot(
+            base, np.sqrt(np.maximum(np.square(centre) - np.square(base), 0.0)) + self.fillet_mm
+        )
+        return radius_mm
+
+    @property
+    def fillet_angle_rad(self) -> Numbers:
+        """Angle of the centre of a root's arc from the middle of its space; negative where two arcs do not fit."""
+        # A curve parallel to an involute is the same involute, turned by the distance over the base radius.
+        angle: Numbers = half_angle(self, self.root_radius_mm - self.fillet_mm) - self.fillet_mm / self.base_radius_mm
+        return angle
+
+    @property
     def tip_thickness_mm(self) -> Numbers:
         """Thickness of a tooth on the tip circle, along the arc: what the space leaves of the pitch."""
         tip = self.tip_radius_mm
-        space = half_angle(self, tip, -_array(self.backlash_mm))
-        return 2.0 * tip * (np.pi / _array(self.teeth) - space)
+        return 2.0 * tip * (np.pi / _array(self.teeth) - half_angle(self, tip))
 
     def area_mm2(self) -> Numbers:
         """The first of ``moments``."""
         return _area_mm2(self)
 
     def moments(self) -> Moments:
-        """As of ``ExternalGear``; the fillets at the root make the hole smaller."""
-        tip, root = self.tip_radius_mm, self.root_radius_mm
-        polar = _teeth_polar_mm4(self, tip, root, -_array(self.backlash_mm))
-        fillets = _fillets_mm2(self, root, -1.0)
-        return _round_moments(self.area_mm2(), 0.5 * np.pi * np.square(tip) ** 2 + polar - fillets * np.square(root))
+        """Exact for the teeth and the tip disc; for the fillets, which make the hole smaller, see there."""
+        return _round_moments(*_internal_mm(self))
+
+
+def _external_mm(gear: ExternalGear) -> tuple[Numbers, Numbers]:
+    (low, low_polar), (high, high_polar) = _below_mm(gear), _between_mm(gear, gear.form_radius_mm, gear.tip_radius_mm)
+    return low + high, low_polar + high_polar
+
+
+def _internal_mm(gear: InternalGear) -> tuple[Numbers, Numbers]:
+    tip, root = gear.tip_radius_mm, gear.root_radius_mm
+    (area, polar), fillets = _between_mm(gear, tip, root), _ring_fillets_mm2(gear, root)
+    return (
+        np.pi * np.square(tip) + area - fillets,
+        0.5 * np.pi * np.square(np.square(tip)) + polar - fillets * np.square(root),
+    )
 
 
 def _area_mm2(gear: ExternalGear | InternalGear) -> Numbers:
@@ -227,12 +340,7 @@ def _area_mm2(gear: ExternalGear | InternalGear) -> Numbers:
 
 
 def _outline_area_mm2(gear: ExternalGear | InternalGear) -> Numbers:
-    root, tip = gear.root_radius_mm, gear.tip_radius_mm
-    if isinstance(gear, InternalGear):
-        area = _teeth_area_mm2(gear, tip, root, -_array(gear.backlash_mm))
-        return np.pi * np.square(tip) + area - _fillets_mm2(gear, root, -1.0)
-    area = _teeth_area_mm2(gear, root, tip, gear.backlash_mm)
-    return np.pi * np.square(root) + area + _fillets_mm2(gear, root, 1.0)
+    return (_internal_mm(gear) if isinstance(gear, InternalGear) else _external_mm(gear))[0]
 
 
 _remembered_area_mm2 = lru_cache(maxsize=1024)(_outline_area_mm2)

@@ -65,6 +65,7 @@ class ToothMaking:
     flank_rz_um: float = 0.0  #: greatest Rz of the flanks
     root_rz_um: float = 0.0  #: greatest Rz of the fillets
     runout_mm: float = 0.0  #: greatest radial runout of the teeth to the datum axis
+    crowning_um: float = 0.0  #: by how much the ends of the flanks stand back behind their middle
 
     @property
     def layer_text(self) -> str:

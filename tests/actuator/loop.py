@@ -8,7 +8,7 @@ from math import acos, atan, cos, hypot, pi, radians, sin, sqrt
 from pareto_monoped.actuator.actuator import build_actuator
 from pareto_monoped.actuator.bearings import catalogue
 from pareto_monoped.actuator.gearset import GearSet
-from tests.actuator.rating import iso6336
+from tests.actuator.rating import teeth
 
 ALPHA = radians(20.0)
 # Shigley, table 14-2.
@@ -94,37 +94,45 @@ def allowed_by_iso6336(motor, family, gears, width):
     body = motor.frameless if family == "ISSPG" else motor.framed
     room = (body.stator_inner_diameter_mm if family == "ISSPG" else body.outer_diameter_mm) - 10.0
     module, planets = gears.module_mm, gears.planets
-    teeth = gears.sun_teeth, gears.planet_teeth, gears.ring_teeth
-    sun, planet, ring, distance = iso6336.shifted(*teeth, float(gears.centre_shift), float(gears.sun_shift))
+    counts = gears.sun_teeth, gears.planet_teeth, gears.ring_teeth
+    sun, planet, ring, distance = teeth.shifted(*counts, float(gears.centre_shift), float(gears.sun_shift))
     worth = 2.0 / sin(ALPHA) ** 2
     if ring.tip <= ring.base:
         return False
+    thinner = 0.03 * module
+    sun_root, planet_root = (
+        module * (gear.teeth / 2 + teeth.generated(gear, thinner / module).x - 1.25) for gear in (sun, planet)
+    )
     rules = [
-        sum(teeth[::2]) % planets == 0,
-        4 * module * (distance * sin(pi / planets) - (planet.tip - 1.0)) >= 5.0 - 1e-9,
+        sum(counts[::2]) % planets == 0,
         module * ring.teeth <= room + 1e-9,
         module * (ring.teeth + 2 * ring.x + 2.5) <= room + 2e-9,
-        module * (planet.teeth / 2 + planet.x - 1.25) - 4.0 >= 1.2 * 2.25 * module - 1e-9,
-        iso6336.contact_ratio(sun, planet, distance) >= 1.2,
-        iso6336.contact_ratio(planet, ring, distance) >= 1.2,
-        ring.tip >= hypot(ring.base, iso6336.line_of_action(planet, ring, distance)) - 1e-9,
+        planet_root - 4.0 >= 1.2 * 2.25 * module - 1e-9,
+        sun_root >= 3.0 - 1e-9,
+        *(gear.teeth + worth * gear.x >= 18 - 1e-9 for gear in (sun, planet)),
     ]
-    for gear in (sun, planet):
-        thinned = gear.thickness(gear.tip) * module - 0.03 * module * gear.tip / (gear.teeth / 2)
-        rules += [gear.teeth + worth * gear.x >= 18 - 1e-9, thinned >= 0.4 * module - 1e-9]
-    rules.append(module * (sun.teeth / 2 + sun.x - 1.25) >= 3.0 - 1e-9)
     if family == "ISSPG":
         rules.append(width <= body.stator_height_mm + 1e-9)
+    if not all(rules):
+        return False
+    sun, planet, ring, distance = teeth.drawn(gears)
+    rules = [
+        4 * module * (distance * sin(pi / planets) - (planet.tip - 1.0)) >= 5.0 - 1e-9,
+        teeth.contact_ratio(sun, planet, distance) >= 1.2,
+        teeth.contact_ratio(planet, ring, distance) >= 1.2,
+        ring.tip >= hypot(ring.base, teeth.line_of_action(planet, ring, distance)) - 1e-9,
+    ]
+    for gear in (sun, planet):
+        thinned = gear.thickness(gear.tip) * module - thinner * gear.tip / (gear.teeth / 2)
+        rules.append(thinned >= 0.4 * module - 1e-9)
     bearing = main_bearing(max(2 * module * distance + 10.0, 35.0))
     if bearing is None or not all(rules):
         return False
     if family == "ISSPG" and bearing[1] / 2 + 2.0 + 7.0 > body.outer_diameter_mm / 2 + 2.3 + 1e-9:
         return False
-    # What is left of the ring's space at the fillets' centres, or of the gap between teeth.
-    spaces = 0.38 * module
-    centre = ring.teeth / 2 + ring.x + 1.25 - 0.38
-    room_left = ring.thickness(centre) * module / 2 + 0.03 * module * centre / ring.teeth - spaces * centre / ring.base
-    return room_left >= -1e-9
+    # The centre of a root's arc, drawn, must lie on its own side of the ring's space.
+    root = teeth.root_of(teeth.generated(ring, thinner / module), ring)
+    return root.centre(root.end())[0] * module >= -1e-9
 
 
 def best_in(motor, family, tenths, settings):
@@ -141,7 +149,12 @@ def best_in(motor, family, tenths, settings):
                     if not allowed(motor, family, sun, planet, ring, module, planets, width):
                         continue
                     gears = GearSet(
-                        sun_teeth=sun, planet_teeth=planet, ring_teeth=ring, module_mm=module, planets=planets
+                        sun_teeth=sun,
+                        planet_teeth=planet,
+                        ring_teeth=ring,
+                        module_mm=module,
+                        planets=planets,
+                        backlash_mm=settings.tooth_thinning_mm(module),
                     )
                     mass = build_actuator(motor, family, gears, settings).mass_kg
                     if best is None or mass < best[0]:

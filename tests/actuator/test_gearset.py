@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from pareto_monoped.actuator.gearset import GearSet, contact_ratios, efficiency, joined
 from pareto_monoped.actuator.service.stiffness import backlash_arcmin
-from tests.actuator.rating import iso6336
+from tests.actuator.rating import teeth
 from tests.geometry.test_gears import tooth_wheel
 
 NOMINAL = GearSet(sun_teeth=18, planet_teeth=36, ring_teeth=90, module_mm=0.5, planets=3)
@@ -37,13 +37,13 @@ SHIFTS = pytest.mark.parametrize("shifts", [(0.0, 0.4), (0.6, 0.5), (0.3, 0.1), 
 def test_shifted_gears_fill_their_working_circles(gears, shifts):
     """The shifts of planets and ring, the contact ratios and the play, against thicknesses on the working circles."""
     shifted = replace(gears, centre_shift=shifts[0], sun_shift=shifts[1])
-    sun, planet, ring, distance = iso6336.shifted(gears.sun_teeth, gears.planet_teeth, gears.ring_teeth, *shifts)
+    sun, planet, ring, distance = teeth.shifted(gears.sun_teeth, gears.planet_teeth, gears.ring_teeth, *shifts)
     assert shifted.carrier_radius_mm == pytest.approx(0.5 * distance, rel=1e-12)
     assert (shifted.planet_shift, shifted.ring_shift) == pytest.approx((planet.x, ring.x), abs=1e-9)
-    assert shifted.tip_shortening == pytest.approx(planet.cut, abs=1e-9)
+    assert shifted.planet().tip_shortening == shifted.sun().tip_shortening == pytest.approx(planet.cut, abs=1e-9)
     for gear, slow in ((shifted.sun(), sun), (shifted.planet(), planet), (shifted.ring(), ring)):
         assert gear.tip_radius_mm == pytest.approx(0.5 * slow.tip, rel=1e-9)
-    expected = iso6336.contact_ratio(sun, planet, distance), iso6336.contact_ratio(planet, ring, distance)
+    expected = teeth.contact_ratio(sun, planet, distance), teeth.contact_ratio(planet, ring, distance)
     assert contact_ratios(shifted) == pytest.approx(expected, rel=1e-9)
     # Thinned by 0.04 mm each on the reference circle, both teeth leave this on the working circles.
     working = distance / (gears.sun_teeth + gears.planet_teeth)
@@ -65,13 +65,86 @@ def test_clearance_stays_that_of_the_basic_rack_at_least(gears, shifts):
         assert clearance >= 0.25 * shifted.module_mm - 1e-9
 
 
+FITTED = [
+    replace(gears, backlash_mm=0.03 * gears.module_mm, tips_fitted=True)
+    for gears in (
+        *(one.shifted(*shifts) for one in SETS for shifts in ((0.0, 0.0), (0.0, 0.4), (0.6, 0.5))),
+        GearSet(sun_teeth=15, planet_teeth=57, ring_teeth=129, module_mm=0.6, planets=3, sun_shift=0.4),
+        GearSet(sun_teeth=15, planet_teeth=20, ring_teeth=55, module_mm=0.9, planets=4, centre_shift=-0.2),
+    )
+]
+
+
+def test_tips_are_as_long_as_a_drawing_of_the_line_of_action_allows():
+    many = joined(FITTED)
+    for k, gears in enumerate(FITTED):
+        *slow, _ = teeth.drawn(gears)
+        for name, expected in zip(("sun", "planet", "ring"), slow, strict=True):
+            wanted = pytest.approx(float(gears.module_mm) * expected.tip, rel=1e-9)
+            for kept in (gears, many.chosen(k), many.where(np.array([k])).chosen(0)):
+                assert getattr(kept, name)().tip_radius_mm == wanted
+            assert getattr(many, name)().tip_radius_mm[k] == wanted
+
+
+def touched_mm(gears, tip, root, off_mm):
+    """Radius at which a tip touches the flank of its mate last, however far down that may go.
+
+    The tip rolls around the mate, which stands still. Its angle less that of the mate's involute is greatest or least
+    where both touch.
+    """
+    shape, mate = getattr(gears, tip)(), getattr(gears, root)()
+    rolls, far = float(mate.teeth / shape.teeth), float(gears.carrier_radius_mm) + off_mm
+    centre, turns, at = {"ring": (-far, 1.0 - rolls, 0.0)}.get(
+        tip, (far, 1.0 - rolls, 0.0) if root == "ring" else (far, 1.0 + rolls, np.pi)
+    )
+    base, most = float(mate.base_radius_mm), float(mate.root_radius_mm if root == "ring" else mate.tip_radius_mm)
+    for side in (1.0, -1.0):
+        low, high = 0.0, 12.0 / min(float(mate.teeth), float(shape.teeth))
+        for _ in range(4):
+            angle = np.linspace(low, high, 20001)
+            point = centre * np.exp(1j * angle) + float(shape.tip_radius_mm) * np.exp(1j * (at + turns * angle))
+            inside = (np.abs(point) > base) & (np.abs(point) < most)
+            angle, point = angle[inside], point[inside]
+            tangent = np.sqrt((np.abs(point) / base) ** 2 - 1.0)
+            apart = np.unwrap(np.angle(point)) - side * (tangent - np.arctan(tangent))
+            turning = np.flatnonzero(np.diff(np.sign(np.diff(apart))))
+            if not len(turning):
+                break
+            low, high = angle[max(turning[0] - 2, 0)], angle[min(turning[0] + 4, len(angle) - 1)]
+        else:
+            return float(np.abs(point[turning[0] + 1]))
+    raise AssertionError("they never touch")
+
+
+def test_tips_that_are_fitted_keep_their_margin_at_either_end_of_the_planets_place():
+    """Against flanks as the rack and the wire leave them, of the thickest and the thinnest teeth."""
+    bound = set()
+    for gears in FITTED:
+        module = float(gears.module_mm)
+        *slow, _ = teeth.drawn(gears)
+        slow = dict(zip(("sun", "planet", "ring"), slow, strict=True))
+        for tip, root in (("sun", "planet"), ("planet", "sun"), ("ring", "planet"), ("planet", "ring")):
+            mate, thin = slow[root], [float(gears.backlash_mm)]
+            if root != "ring":
+                thin.append(teeth.thinning(mate.teeth, module, thin[0]))
+            ends = [module * teeth.form_radius(teeth.generated(mate, one / module), mate) for one in thin]
+            left = []
+            for off_mm in (-0.022, 0.0, 0.022):
+                touched = touched_mm(gears, tip, root, off_mm)
+                left.append(min(ends) - touched if root == "ring" else touched - max(ends))
+            assert min(left) >= 0.02 * module - 1e-6
+            bound |= {(tip, root)} if min(left) <= 0.02 * module + 1e-6 else set()
+    # The margin of each is exact somewhere: no tip is shorter than it must be.
+    assert len(bound) == 4
+
+
 def test_one_set_of_many_keeps_its_shifts():
     many = joined([SETS[0], SETS[1].shifted(0.6, 0.5), SETS[2].shifted(0.0, 0.4)])
     assert str(many.chosen(0)) == str(SETS[0])
     assert many.chosen(1) == replace(SETS[1], centre_shift=0.6, sun_shift=0.5)
     assert many.where(np.array([2])).chosen(0) == replace(SETS[2], sun_shift=0.4)
     assert str(many.chosen(2)) == "22/65/152 m 0.5 x3, shifts +0.40/-0.40/-0.40"
-    assert many.planet_shift[0] == many.ring_shift[0] == many.tip_shortening[0] == 0.0
+    assert many.planet_shift[0] == many.ring_shift[0] == many.planet().tip_shortening[0] == 0.0
     assert many.working_angle_rad[0] == SETS[0].working_angle_rad
 
 
@@ -112,7 +185,7 @@ def test_efficiency_is_the_power_balance_of_the_stage(plain, shifts):
     """Mesh losses integrated numerically; then sun and ring torque add up to the carrier's."""
     friction = 0.1
     gears = replace(plain, centre_shift=shifts[0], sun_shift=shifts[1])
-    *slow, distance = iso6336.shifted(plain.sun_teeth, plain.planet_teeth, plain.ring_teeth, *shifts)
+    *slow, distance = teeth.shifted(plain.sun_teeth, plain.planet_teeth, plain.ring_teeth, *shifts)
     outer, inner = contact_ratios(gears)
     base_pitch = np.pi * np.cos(np.radians(20.0))
 

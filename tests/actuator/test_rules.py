@@ -10,14 +10,21 @@ from pareto_monoped.actuator.rating.width import lewis_width_mm
 from pareto_monoped.actuator.rules import CONSTRAINTS, CandidateSets, violations
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.design import CONSTRAINT_NAMES
-from pareto_monoped.geometry.gears import ExternalGear, InternalGear, fillet_room_rad
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 
 MOTOR = load_motor("VT8020")
 
 
 def broken(family, sun, planet, module, planets, settings=None):
     settings = settings or ActuatorSettings(rules="paper")
-    gears = GearSet(sun_teeth=sun, planet_teeth=planet, ring_teeth=sun + 2 * planet, module_mm=module, planets=planets)
+    gears = GearSet(
+        sun_teeth=sun,
+        planet_teeth=planet,
+        ring_teeth=sun + 2 * planet,
+        module_mm=module,
+        planets=planets,
+        backlash_mm=settings.tooth_thinning_mm(module),
+    )
     width = lewis_width_mm(gears, MOTOR, settings)
     at = layout(MOTOR, family, gears, width, settings)
     names, flags = violations(
@@ -87,7 +94,14 @@ def test_arrays_and_single_sets_agree():
     settings = ActuatorSettings(rules="paper")
     sun, planet = np.array([18, 30, 19, 23]), np.array([36, 30, 38, 23])
     module, planets = np.array([0.5, 0.5, 0.5, 0.5]), np.array([3, 5, 3, 4])
-    gears = GearSet(sun_teeth=sun, planet_teeth=planet, ring_teeth=sun + 2 * planet, module_mm=module, planets=planets)
+    gears = GearSet(
+        sun_teeth=sun,
+        planet_teeth=planet,
+        ring_teeth=sun + 2 * planet,
+        module_mm=module,
+        planets=planets,
+        backlash_mm=settings.tooth_thinning_mm(module),
+    )
     width = lewis_width_mm(gears, MOTOR, settings)
     at = layout(MOTOR, "ISSPG", gears, width, settings)
     names, flags = violations(
@@ -102,7 +116,7 @@ def test_every_constraint_has_its_rule_and_no_rule_is_without_a_name():
     assert tuple(CONSTRAINTS) == CONSTRAINT_NAMES
 
 
-def test_without_a_shift_all_teeth_are_thick_at_their_tips_and_leave_room_for_fillets():
+def test_without_a_shift_all_teeth_are_thick_at_their_tips_and_two_arcs_fit_in_a_ring_s_root():
     """The rules ``tip_thickness`` and ``root_fillet`` look at shifted sets only."""
     data = ActuatorSettings().parts
     for module in ActuatorSettings().modules_mm:
@@ -111,5 +125,4 @@ def test_without_a_shift_all_teeth_are_thick_at_their_tips_and_leave_room_for_fi
         outer = ExternalGear(teeth=teeth, module_mm=module, backlash_mm=thinning)
         inner = InternalGear(teeth=teeth[24:], module_mm=module, backlash_mm=thinning)
         assert (outer.tip_thickness_mm >= data.rating.tip_thickness_modules * module).all()
-        assert (fillet_room_rad(outer) > 0.0).all()
-        assert (fillet_room_rad(inner) > 0.0).all()
+        assert (inner.fillet_angle_rad > 0.0).all()

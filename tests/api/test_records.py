@@ -61,7 +61,7 @@ MADE = {
     "Robot": (
         lambda _: pm.build_robot(C),
         lambda one: (
-            f"Robot(hip 'VT8020' 4.0000:1, knee 'VT8020' 6.0000:1, thigh 0.49 m, shank 0.36 m, {one.mass_kg:.3f} kg)"
+            f"Robot(hip 'VT8020' 4.0909:1, knee 'VT8020' 6.0000:1, thigh 0.49 m, shank 0.36 m, {one.mass_kg:.3f} kg)"
         ),
     ),
     "Unit": (

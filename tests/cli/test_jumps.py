@@ -33,15 +33,15 @@ def test_simulate_json_has_what_others_rely_on(capsys):
 
 
 def test_rules_choose_the_gearboxes_and_a_stand_in_is_noted(capsys):
-    code, out, err = run(capsys, "simulate", "--case", "A", "--set", "knee_ratio=8.35", "--rules", "iso6336", "--json")
+    code, out, err = run(capsys, "simulate", "--case", "A", "--set", "knee_ratio=6.15", "--rules", "iso6336", "--json")
     report = json.loads(out)
     assert (code, report["status"], report["rules"]) == (0, "ok", "iso6336")
     note = " ".join(err.split())
-    assert "note: gear ratio 8.35: " in note
+    assert "note: gear ratio 6.15: " in note
     assert "stands in" in note
-    assert json.loads(run(capsys, "simulate", "--case", "A", "--set", "knee_ratio=8.35", "--json")[1]) == report
+    assert json.loads(run(capsys, "simulate", "--case", "A", "--set", "knee_ratio=6.15", "--json")[1]) == report
     plain = json.loads(
-        run(capsys, "simulate", "--case", "A", "--set", "knee_ratio=8.35", "--rules", "paper", "--json")[1]
+        run(capsys, "simulate", "--case", "A", "--set", "knee_ratio=6.15", "--rules", "paper", "--json")[1]
     )
     assert "rules" not in plain
     assert plain["height_m"] != report["height_m"]
@@ -59,7 +59,7 @@ def test_set_changes_a_variable_and_notes_what_lies_outside_the_paper(capsys):
     assert code == 0
     design = json.loads(out)["design"]
     assert (design["thigh_length_m"], design["stiffness_n_per_m"]) == (0.55, 30.0)
-    assert err.splitlines() == ["note: outside the paper's bounds: thigh_length_m = 0.55 (0.3 to 0.5 m)"]
+    assert "note: outside the paper's bounds: thigh_length_m = 0.55 (0.3 to 0.5 m)" in err.splitlines()
 
 
 def test_a_ratio_without_a_gearbox_is_refused_with_a_cure(capsys):

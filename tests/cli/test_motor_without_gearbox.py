@@ -29,7 +29,7 @@ SAYS = (
     "choose a larger motor or correct the file\n"
 )
 WORDS = SAYS.format(
-    "gearbox_diameter, meshing, no_interference, planet_rim, ring_root, root_fillet, sun_rim, teeth_min"
+    "contact_ratio, gearbox_diameter, meshing, no_interference, planet_rim, ring_root, root_fillet, sun_rim, teeth_min"
 )
 STORED_WORDS = SAYS.format("bearing_room, gearbox_diameter, ring_root, sun_rim, teeth_min")
 """The stored study's rules are those of the paper."""

@@ -106,7 +106,7 @@ class TestMainJob:
         with (folder / "reports" / "quick" / "actuators.csv").open() as stream:
             ratios = [float(row["ratio_low"]) for row in csv.DictReader(stream)]
         assert ratios[0] == 4.0
-        assert ratios[-1] == 8.4
+        assert ratios[-1] == 9.6
 
     def test_the_study_is_whole_and_the_exported_design_is_its_knee(self, job):
         folder, _ = job

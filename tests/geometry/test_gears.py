@@ -1,4 +1,7 @@
-"""Gear areas against polygons drawn along the unrolled involute, and against known properties of involute gears."""
+"""Gears against teeth cut by a rack, rings drawn along the unrolled involute, and properties of involute gears.
+
+Areas and roots of sun and planet are compared with cut teeth in ``test_cut_teeth``.
+"""
 
 import numpy as np
 import pytest
@@ -6,8 +9,9 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pareto_monoped.geometry.gears import FILLET, ExternalGear, InternalGear, fillet_room_rad, half_angle
-from tests.geometry.polygons import integrals_of, region_integrals
+from pareto_monoped.geometry.gears import FILLET, ExternalGear, InternalGear, half_angle
+from tests.geometry.cutting import cut_gear
+from tests.geometry.polygons import region_integrals
 
 ALPHA = np.radians(20.0)
 
@@ -32,44 +36,57 @@ def tooth_wheel(teeth, module, root, tip, thinning, shift=0.0):
     return shapely.Polygon(np.stack([r * np.cos(a), r * np.sin(a)], axis=1))
 
 
-@pytest.mark.parametrize("teeth", [18, 20, 30, 41, 42, 67])
-@pytest.mark.parametrize(("backlash", "shift", "cut"), [(0.0, 0.0, 0.0), (0.04, 0.0, 0.0), (0.04, 0.5, 0.06)])
-def test_external_gear_is_its_drawing_with_rounded_roots(teeth, backlash, shift, cut):
-    gear = ExternalGear(teeth=teeth, module_mm=0.5, backlash_mm=backlash, shift=shift, tip_shortening=cut)
+@pytest.mark.parametrize(
+    ("teeth", "thinning", "shift", "cut"),
+    [(12, 0.04, 0.0, 0.0), (14, 0.04, 0.5, 0.06), (18, 0.0, 0.0, 0.0), (30, 0.04, -0.4, 0.1), (67, 0.04, 0.1, 0.02)],
+)
+def test_an_external_gear_turns_as_heavily_as_what_a_rack_leaves(teeth, thinning, shift, cut):
+    gear = ExternalGear(teeth=teeth, module_mm=0.5, backlash_mm=thinning, shift=shift, tip_shortening=cut)
     assert gear.tip_radius_mm == pytest.approx(0.25 * teeth + 0.5 * (1.0 + shift - cut))
-    assert gear.root_radius_mm == pytest.approx(0.25 * teeth - 0.5 * (1.25 - shift))
-    drawn = tooth_wheel(teeth, 0.5, gear.root_radius_mm, gear.tip_radius_mm, backlash, shift)
-    assert drawn.is_valid
-    rho = FILLET * 0.5
-    rounded = drawn.buffer(rho, quad_segs=32).buffer(-rho, quad_segs=32)  # a closing rolls a disc in the corners
-    got, expected = integrals_of(gear.moments()), region_integrals(rounded)
-    # Shifted outwards, a space of few teeth is narrow at its bottom.
-    assert got[0] == pytest.approx(expected[0], rel=7e-4 if shift else 2e-4)
-    assert got[3] + got[4] == pytest.approx(expected[3] + expected[4], rel=1e-3 if shift else 6e-4)
-    # Fillets are no more than what the closing filled, within a tenth, or a fifth where shifted.
-    bare = region_integrals(drawn)[0]
-    assert got[0] - bare == pytest.approx(expected[0] - bare, rel=0.2 if shift else 0.1)
+    left = region_integrals(cut_gear(teeth, 0.5, shift, thinning, float(gear.tip_radius_mm)))
+    assert gear.moments().xx + gear.moments().yy == pytest.approx(teeth * (left[3] + left[4]), rel=5e-5)
+
+
+@settings(max_examples=100)
+@given(st.integers(12, 90), st.floats(-0.6, 0.9), st.floats(0.0, 0.05))
+def test_the_end_of_the_rack_s_straight_flank_cuts_on_the_form_circle_or_above_it_if_undercut(teeth, shift, thinning):
+    gear = ExternalGear(teeth=teeth, module_mm=0.5, backlash_mm=thinning, shift=shift)
+    # Undercut if the straight flank reaches below the point where the line of action touches the base circle.
+    feed = 0.5 * shift - 0.5 * thinning / np.tan(ALPHA)
+    straight = 0.5 * (1.25 - 0.38 * (1.0 - np.sin(ALPHA))) - feed
+    undercut = straight - gear.pitch_radius_mm * np.sin(ALPHA) ** 2
+    if undercut <= 0.0:
+        assert gear.straight_end_mm == pytest.approx(gear.form_radius_mm, rel=1e-12)
+    elif undercut > 1e-3:
+        assert gear.straight_end_mm > gear.form_radius_mm + 1e-7
 
 
 @pytest.mark.parametrize("teeth", [54, 90, 154])
-@pytest.mark.parametrize(("backlash", "shift"), [(0.0, 0.0), (0.04, 0.0), (0.04, 0.8), (0.04, -0.4)])
-def test_internal_gear_is_its_drawing_with_rounded_roots(teeth, backlash, shift):
-    gear = InternalGear(teeth=teeth, module_mm=0.5, backlash_mm=backlash, shift=shift)
-    assert gear.tip_radius_mm == pytest.approx(0.25 * teeth - 0.5 * (1.0 - shift))
+@pytest.mark.parametrize(
+    ("backlash", "shift", "cut"), [(0.0, 0.0, 0.0), (0.04, 0.0, 0.2), (0.04, 0.8, 0.0), (0.04, -0.4, 0.1)]
+)
+def test_internal_gear_is_its_drawing_with_rounded_roots(teeth, backlash, shift, cut):
+    gear = InternalGear(teeth=teeth, module_mm=0.5, backlash_mm=backlash, shift=shift, tip_shortening=cut)
+    assert gear.tip_radius_mm == pytest.approx(0.25 * teeth - 0.5 * (1.0 - shift - cut))
+    assert gear.root_radius_mm == pytest.approx(0.25 * teeth + 0.5 * (1.25 + shift))
     if shift > 0.0 and teeth < 60:
-        assert fillet_room_rad(gear) < 0.0
+        assert gear.fillet_angle_rad < 0.0
         return
     drawn = tooth_wheel(teeth, 0.5, gear.tip_radius_mm, gear.root_radius_mm, -backlash, shift)
     rho = FILLET * 0.5
     disc = shapely.Point(0, 0).buffer(gear.root_radius_mm + 2.0, quad_segs=2000)
     ring = disc.difference(drawn).buffer(rho, quad_segs=32).buffer(-rho, quad_segs=32)
-    hole = np.pi * (gear.root_radius_mm + 2.0) ** 2 - ring.area
-    assert gear.moments().area == pytest.approx(hole, rel=5e-5)
+    hole = region_integrals(disc) - region_integrals(ring)
+    assert gear.moments().area == pytest.approx(hole[0], rel=5e-5)
+    assert gear.moments().xx + gear.moments().yy == pytest.approx(hole[3] + hole[4], rel=1e-4)
 
 
-def test_tooth_thickness_on_the_pitch_circle_is_half_the_pitch_less_the_backlash():
-    psi = half_angle(ExternalGear(teeth=36, module_mm=0.5), 9.0, 0.04)
-    assert 2.0 * 9.0 * psi == pytest.approx(np.pi * 0.5 / 2.0 - 0.04, rel=1e-12)
+@pytest.mark.parametrize(("kind", "sign"), [(ExternalGear, -1.0), (InternalGear, 1.0)])
+def test_half_of_the_pitch_circle_is_tooth_but_for_backlash_and_shift(kind, sign):
+    """A rack that is shifted by x m cuts 2 x m tan 20 degrees less off the pitch line."""
+    gear = kind(teeth=36, module_mm=0.5, backlash_mm=0.04, shift=0.3)
+    expected = np.pi * 0.5 / 2.0 + 2.0 * 0.3 * 0.5 * np.tan(ALPHA) + sign * 0.04
+    assert 2.0 * 9.0 * half_angle(gear, 9.0) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(("teeth", "shift"), [(14, 0.5), (24, 0.0), (36, -0.4)])
@@ -79,14 +96,6 @@ def test_a_tooth_is_as_thick_at_its_tip_as_it_is_drawn(teeth, shift):
     turn = np.linspace(0.0, 2.0 * np.pi, 200001)
     circle = shapely.LineString(gear.tip_radius_mm * np.stack([np.cos(turn), np.sin(turn)], axis=1))
     assert gear.tip_thickness_mm == pytest.approx(circle.intersection(drawn).length / teeth, rel=1e-3)
-
-
-def test_golden_values_from_fine_drawings():
-    # A polygon as above with fillets, computed once.
-    gear = ExternalGear(teeth=18, module_mm=0.5)
-    assert gear.moments().area == pytest.approx(62.12, abs=0.02)
-    # A pitch cylinder overstates the 18-tooth gear by 2.4 percent.
-    assert np.pi * 4.5**2 / gear.moments().area == pytest.approx(1.024, abs=0.001)
 
 
 @given(teeth=st.integers(18, 160), module=st.sampled_from([0.5, 0.55, 0.6, 0.7, 0.8, 1.0]))

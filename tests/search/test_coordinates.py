@@ -194,8 +194,10 @@ def test_studies_of_earlier_versions_search_ratios():
 
 
 def test_no_gearbox_from_outside_stands_in_for_bounds_that_have_none(actuator_map):
-    assert [gear.ratio for gear in gear_list(actuator_map, Bounds(lower=8.0, upper=12.0))][-1] == pytest.approx(8.4)
-    assert actuator_map.stand_in(9.0)
-    assert gear_list(actuator_map, Bounds(lower=9.0, upper=12.0)) == ()
-    with pytest.raises(StudyError, match=r"variables\.knee_ratio = 9 to 12: VT8020 has no gearbox in \[9\.0, 9\.1\)"):
-        coordinates_of(listed(variables={"knee_ratio": {"lower": 9.0, "upper": 12.0}}), actuator_map)
+    assert [gear.ratio for gear in gear_list(actuator_map, Bounds(lower=8.0, upper=12.0))][-1] == pytest.approx(9.6)
+    assert actuator_map.stand_in(9.7)
+    assert gear_list(actuator_map, Bounds(lower=9.7, upper=12.0)) == ()
+    with pytest.raises(
+        StudyError, match=r"variables\.knee_ratio = 9\.7 to 12: VT8020 has no gearbox in \[9\.7, 9\.8\)"
+    ):
+        coordinates_of(listed(variables={"knee_ratio": {"lower": 9.7, "upper": 12.0}}), actuator_map)

@@ -1,6 +1,7 @@
 """From gear sets, motor and settings to a ``Stage`` that can be rated at any face width."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial, reduce
 
 import numpy as np
@@ -33,7 +34,7 @@ from pareto_monoped.actuator.rating.geometry import (
     single_contact_factors,
     tooth_form,
 )
-from pareto_monoped.actuator.rating.stage import Member, Mesh, Safeties, Stage
+from pareto_monoped.actuator.rating.stage import Member, Mesh, Safeties, Stage, finish_factor
 from pareto_monoped.actuator.service.loads import planet_width_mm
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.webs import webs_of
@@ -173,15 +174,15 @@ def _member(
 ) -> Member:
     """Return one gear in one mesh; ``internal`` says whether the mesh is the ring's."""
     data, duty = settings.parts.rating, settings.parts.duty
-    thinning = settings.tooth_thinning_mm(module_mm) + thickness_tolerance_mm(module_mm * shape.teeth, RATED_SERIES)
-    form = tooth_form(shape, contact_ratio, thinning)
+    thinnest = shape.backlash_mm + thickness_tolerance_mm(module_mm * shape.teeth, RATED_SERIES)
+    form = tooth_form(replace(shape, backlash_mm=thinnest), contact_ratio)
     flank_curve, root_curve = FLANK_CURVES[steel.treatment], ROOT_CURVES[steel.treatment]
     flank_cycles = equivalent_cycles(passes, duty, flank_curve.exponent, flank=True, both_ways=idler)
     root_cycles = equivalent_cycles(passes, duty, root_curve.exponent, flank=False, both_ways=idler)
     flank_life, root_life = flank_curve.factor(flank_cycles), root_curve.factor(root_cycles)
     # Stresses are those at the peak torque. A duty that goes beyond it leaves so much less for them.
     highest = highest_share(duty)
-    flank = flank_limit_mpa(steel, mate, flank_life, data.flank_finish_factor) / np.sqrt(highest)
+    flank = flank_limit_mpa(steel, mate, flank_life, finish_factor(settings, internal=internal)) / np.sqrt(highest)
     bending = data.reversed_bending_factor if idler else mean_stress_factor(steel, form, reversal_ratio(duty))
     root = root_limit_mpa(steel, form, root_life, roughness_um=data.root_roughness_um, bending_factor=bending)
     root = root / highest

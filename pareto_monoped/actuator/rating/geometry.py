@@ -7,16 +7,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, FILLET, PRESSURE_ANGLE_RAD, ExternalGear, InternalGear
+from pareto_monoped.geometry.gears import (
+    ADDENDUM,
+    DEDENDUM,
+    FILLET,
+    PRESSURE_ANGLE_RAD,
+    ExternalGear,
+    InternalGear,
+    half_angle,
+    rounding_off_middle,
+)
 from pareto_monoped.geometry.shapes import Numbers
 
-_TANGENT = np.tan(PRESSURE_ANGLE_RAD)
-_INVOLUTE = _TANGENT - PRESSURE_ANGLE_RAD
 _NEWTON_STEPS = 5
 """From the start used, four steps reach rounding for 12 teeth or more; one is spare."""
-_LEAST_FILLET = 0.02
-"""Least fillet radius in modules. A rack cannot make rings of very large shift; such roots count as sharply notched."""
 TOOTH_DEPTH = ADDENDUM + DEDENDUM
+_NOWHERE = 1e-9
+"""Radius of curvature, over that of the base circles, squared, below which there is no flank."""
 
 
 def zone_factor(working_angle_rad: Numbers) -> Numbers:
@@ -49,17 +56,18 @@ def single_contact_factors(
     """Return Z_B and Z_D: contact stress at the inner point of single pair contact over that at the pitch point.
 
     ISO 6336-2, clause 6.3; not below 1. For an internal mesh z2 counts as negative and Z_D is 1. At contact ratios
-    above 2, the same point, one base pitch before the end of contact, is the inner point of two pair contact.
+    above 2, the same point, one base pitch before the end of contact, is the inner point of two pair contact. Far below
+    1, it may lie inside a base circle: the factor is then next to infinite.
     """
     angle_1, angle_2 = 2.0 * np.pi / pinion.teeth, 2.0 * np.pi / wheel.teeth
     internal = isinstance(wheel, InternalGear)
     side = -1.0 if internal else 1.0
     tip_1, tip_2 = _tip_tangent(pinion), _tip_tangent(wheel)
     beyond, pitch = contact_ratio - 1.0, np.tan(working_angle_rad)
-    of_pinion = pitch / np.sqrt((tip_1 - angle_1) * (tip_2 - side * beyond * angle_2))
+    of_pinion = pitch / np.sqrt(np.maximum((tip_1 - angle_1) * (tip_2 - side * beyond * angle_2), _NOWHERE))
     if internal:
         return np.maximum(of_pinion, 1.0), np.ones(np.shape(of_pinion))[()]
-    of_wheel = pitch / np.sqrt((tip_2 - angle_2) * (tip_1 - beyond * angle_1))
+    of_wheel = pitch / np.sqrt(np.maximum((tip_2 - angle_2) * (tip_1 - beyond * angle_1), _NOWHERE))
     return np.maximum(of_pinion, 1.0), np.maximum(of_wheel, 1.0)
 
 
@@ -72,65 +80,62 @@ class ToothForm:
     notch: Numbers  #: notch parameter q_s = s_Fn / (2 rho_F)
 
 
-def thinned_shift(gear: ExternalGear | InternalGear, thinning_mm: Numbers) -> Numbers:
-    """Return x_E, the shift at which the rack generates teeth that are thinner by ``thinning_mm`` on the reference
-    circle.
-
-    x_E = x - A / (2 m tan(alpha)) (ISO 21771), with x as the standard counts it: in a ring, inwards.
-    """
-    sign = -1.0 if isinstance(gear, InternalGear) else 1.0
-    thinned: Numbers = gear.shift * sign - 0.5 * thinning_mm / (gear.module_mm * _TANGENT)
-    return thinned
-
-
-def tooth_form(gear: ExternalGear | InternalGear, contact_ratio: Numbers, thinning_mm: Numbers = 0.0) -> ToothForm:
+def tooth_form(gear: ExternalGear | InternalGear, contact_ratio: Numbers) -> ToothForm:
     """Return Y_F and Y_S by method B (ISO 6336-3:2006, clauses 6.2 and 7.2).
 
     The critical section lies where the fillet's tangent makes 30 degrees with the tooth's centre line, 60 degrees in an
-    internal gear. An internal gear counts as one with a negative number of teeth. Its fillet is that of the basic rack:
-    the ring is cut by wire or with a large cutter. Lengths in modules. At contact ratios above 2, the point of loading,
-    one base pitch after the beginning of contact, is the inner point of triple pair contact, as the standard asks.
+    internal gear, whose root is an arc. Lengths in modules. At contact ratios above 2, the point of loading, one base
+    pitch after the beginning of contact, is the inner point of triple pair contact, as the standard asks.
 
     Thinned teeth are those of the generating profile shift x_E, which also makes their roots deeper. ISO 6336-3 lets
     one take x instead up to a thinning of 0.05 modules (clause 6.2; cited from memory). Here x_E is taken always.
-
-    ``thinning_mm``: by how much the tooth is thinner than without backlash, on the reference circle.
     """
     internal = isinstance(gear, InternalGear)
-    sign = -1.0 if internal else 1.0
-    z, shift = np.asarray(gear.teeth, dtype=np.float64) * sign, thinned_shift(gear, thinning_mm)
-    # Distance of the centre of the rack's tip rounding from the middle of its tooth (E), and below the pitch line (G).
-    distance = (
-        0.25 * np.pi - DEDENDUM * _TANGENT - (1.0 - np.sin(PRESSURE_ANGLE_RAD)) * FILLET / np.cos(PRESSURE_ANGLE_RAD)
-    )
-    depth = FILLET - DEDENDUM + shift
-    theta = _tangent_angle(z, depth, 2.0 / z * (0.5 * np.pi - distance), internal=internal)
-    root = depth / np.cos(theta) - FILLET
-    radius = FILLET + 2.0 * depth**2 / (np.cos(theta) * (z * np.square(np.cos(theta)) - 2.0 * depth))
-    radius = np.maximum(radius, _LEAST_FILLET)
-    load_diameter, load_angle = _load_point(gear, contact_ratio)
-    # Angle between the force and the normal to the tooth's centre line: alpha_Fen.
-    half_tooth = (0.5 * np.pi + 2.0 * shift * _TANGENT) / z + _INVOLUTE - (np.tan(load_angle) - load_angle)
-    force_angle = load_angle - half_tooth
-    lever = (np.cos(half_tooth) - np.sin(half_tooth) * np.tan(force_angle)) * load_diameter
+    radius, load_angle = _load_point(gear, contact_ratio)
+    half_tooth = half_angle(gear, radius)
     if internal:
-        thickness = z * np.sin(np.pi / 6.0 - theta) + root
-        arm = 0.5 * (lever - z * np.cos(np.pi / 6.0 - theta) - np.sqrt(3.0) * root)
-    else:
-        thickness = z * np.sin(np.pi / 3.0 - theta) + np.sqrt(3.0) * root
-        arm = 0.5 * (lever - z * np.cos(np.pi / 3.0 - theta) - root)
-    notch = thickness / (2.0 * radius)
-    slenderness = thickness / arm
+        half_tooth = half_tooth - np.pi / gear.teeth  # the flank leans the other way
+    half_mm, height_mm, fillet_mm = _arc_section(gear) if isinstance(gear, InternalGear) else _rack_section(gear)
+    # Angle between the force and the normal to the tooth's centre line: alpha_Fen. The force's line touches the base
+    # circle, so that it crosses the centre line at base radius / cos(alpha_Fen).
+    force_angle = load_angle - half_tooth
+    crossing_mm = gear.base_radius_mm / np.cos(force_angle)
+    arm_mm = height_mm - crossing_mm if internal else crossing_mm - height_mm
+    notch, slenderness = half_mm / fillet_mm, 2.0 * half_mm / arm_mm
+    bent = 1.5 * arm_mm * gear.module_mm / np.square(half_mm)
     return ToothForm(
-        form_factor=6.0 * arm * np.cos(force_angle) / (np.square(thickness) * np.cos(PRESSURE_ANGLE_RAD)),
+        form_factor=bent * np.cos(force_angle) / np.cos(PRESSURE_ANGLE_RAD),
         stress_correction=(1.2 + 0.13 * slenderness) * np.power(notch, 1.0 / (1.21 + 2.3 / slenderness)),
         notch=notch,
     )
 
 
-def _tangent_angle(z: Numbers, depth: Numbers, turned: Numbers, *, internal: bool) -> Numbers:
+def _arc_section(gear: InternalGear) -> tuple[Numbers, Numbers, Numbers]:
+    """Return half the thickness of a ring's tooth at its root, how far that is from the axis, and its radius."""
+    centre, angle = gear.root_radius_mm - gear.fillet_mm, np.pi / gear.teeth - gear.fillet_angle_rad
+    return (
+        centre * np.sin(angle) - 0.5 * gear.fillet_mm,
+        centre * np.cos(angle) + 0.5 * np.sqrt(3.0) * gear.fillet_mm,
+        gear.fillet_mm,
+    )
+
+
+def _rack_section(gear: ExternalGear) -> tuple[Numbers, Numbers, Numbers]:
+    """Return the same of a tooth that the rack cuts (ISO 6336-3, equations of clause 6.2)."""
+    z = np.asarray(gear.teeth, dtype=np.float64)
+    # Where the centre of the rack's tip rounding is: off the middle of the rack's tooth, and below the pitch line (G).
+    depth = FILLET - DEDENDUM + gear.generating_shift
+    theta = _tangent_angle(z, depth, 2.0 / z * (0.5 * np.pi - rounding_off_middle(gear.pressure_angle_rad)))
+    root = depth / np.cos(theta) - FILLET
+    radius = FILLET + 2.0 * depth**2 / (np.cos(theta) * (z * np.square(np.cos(theta)) - 2.0 * depth))
+    half = 0.5 * (z * np.sin(np.pi / 3.0 - theta) + np.sqrt(3.0) * root)
+    height = 0.5 * (z * np.cos(np.pi / 3.0 - theta) + root)
+    return half * gear.module_mm, height * gear.module_mm, radius * gear.module_mm
+
+
+def _tangent_angle(z: Numbers, depth: Numbers, turned: Numbers) -> Numbers:
     """Return the auxiliary angle theta: theta = (2 G / z) tan(theta) - H, by Newton's method."""
-    constant = turned - (np.pi / 6.0 if internal else np.pi / 3.0)
+    constant = turned - np.pi / 3.0
     theta = np.full(np.shape(z), np.pi / 6.0)[()]
     for _ in range(_NEWTON_STEPS):
         miss = theta - 2.0 * depth / z * np.tan(theta) + constant
@@ -139,13 +144,11 @@ def _tangent_angle(z: Numbers, depth: Numbers, turned: Numbers, *, internal: boo
 
 
 def _load_point(gear: ExternalGear | InternalGear, contact_ratio: Numbers) -> tuple[Numbers, Numbers]:
-    """Return d_en of the outer point of single pair contact, in modules, and the angle there; negative for a ring."""
+    """Return the radius in mm of the outer point of single pair contact, and the pressure angle there."""
     sign = -1.0 if isinstance(gear, InternalGear) else 1.0
-    base, tip = gear.base_radius_mm / gear.module_mm, gear.tip_radius_mm / gear.module_mm
-    pitch = np.pi * np.cos(PRESSURE_ANGLE_RAD)
-    along = np.sqrt(np.square(tip) - np.square(base)) - sign * pitch * (contact_ratio - 1.0)
-    radius = np.sqrt(np.square(along) + np.square(base))
-    return 2.0 * sign * radius, np.arctan(along / base)
+    base, pitch = gear.base_radius_mm, np.pi * gear.module_mm * np.cos(PRESSURE_ANGLE_RAD)
+    along = np.sqrt(np.square(gear.tip_radius_mm) - np.square(base)) - sign * pitch * (contact_ratio - 1.0)
+    return np.hypot(along, base), np.arctan(along / base)
 
 
 def external_rim_factor(rim_over_depth: Numbers) -> Numbers:

@@ -5,7 +5,9 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.rating.capacity import (
     FLANK_CURVES,
     ROOT_CURVES,
@@ -18,8 +20,17 @@ from pareto_monoped.actuator.rating.capacity import (
     static_notch_factor,
 )
 from pareto_monoped.actuator.rating.geometry import contact_ratio_factor, zone_factor
-from pareto_monoped.actuator.rating.stage import Member, Mesh, MeshLoad, Safeties, Stage, acting, safeties_of
-from pareto_monoped.geometry.gears import ExternalGear, InternalGear
+from pareto_monoped.actuator.rating.stage import (
+    Member,
+    Mesh,
+    MeshLoad,
+    Safeties,
+    Stage,
+    acting,
+    finish_factor,
+    safeties_of,
+)
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear, half_angle
 from pareto_monoped.geometry.shapes import Numbers
 
 
@@ -33,6 +44,7 @@ class GearRating:
     quality: str  #: likewise
     hardness_hv: float  #: likewise
     tip_diameter_mm: float  #: d_a
+    form_diameter_mm: float  #: d_Ff, where the involute begins, or ends in a ring
     root_diameter_mm: float  #: d_f
     tip_thickness_mm: float  #: s_a of the drawn teeth
     contact_number_mpa: float  #: sigma_H,lim
@@ -162,14 +174,6 @@ def ratings(stage: Stage, width_mm: Numbers) -> tuple[Rating, ...]:
     return tuple(map(one, range(np.size(width_mm))))
 
 
-def _drawn(stage: Stage, gear: str) -> ExternalGear | InternalGear:
-    """Return a gear with the backlash that it is drawn with."""
-    thinning = stage.settings.tooth_thinning_mm(stage.gears.module_mm)
-    if gear == "ring":
-        return stage.gears.ring(thinning)
-    return stage.gears.sun(thinning) if gear == "sun" else stage.gears.planet(thinning)
-
-
 def _mesh(stage: Stage, mesh: Mesh, at: MeshLoad, over: MeshLoad, number: Callable[[Numbers], float]) -> MeshRating:
     loads = acting(at, over)
     return MeshRating(
@@ -206,7 +210,7 @@ def _gear(stage: Stage, mesh: Mesh, member: Member, loads: Safeties, number: Cal
         loads.flank, mesh.diameter_mm, mesh.ratio, member.contact_factors, internal=mesh.internal
     )
     bending = bending_stress_mpa(loads.root, stage.gears.module_mm, member.form, member.rim_factor)
-    drawn, data = _drawn(stage, member.gear), stage.settings.parts.rating
+    drawn, data = getattr(stage.gears, member.gear)(), stage.settings.parts.rating
     return GearRating(
         gear=member.gear,
         steel=member.steel.name,
@@ -214,6 +218,7 @@ def _gear(stage: Stage, mesh: Mesh, member: Member, loads: Safeties, number: Cal
         quality=member.steel.quality,
         hardness_hv=member.steel.hardness_hv,
         tip_diameter_mm=number(2.0 * drawn.tip_radius_mm),
+        form_diameter_mm=number(2.0 * drawn.form_radius_mm),
         root_diameter_mm=number(2.0 * drawn.root_radius_mm),
         tip_thickness_mm=number(drawn.tip_thickness_mm),
         contact_number_mpa=member.steel.flank_limit_mpa,
@@ -227,7 +232,7 @@ def _gear(stage: Stage, mesh: Mesh, member: Member, loads: Safeties, number: Cal
         overload_flank_safety=number(safeties.overload_flank),
         overload_root_safety=number(safeties.overload_root),
         single_contact_factor=number(member.single_contact),
-        finish_factor=data.flank_finish_factor,
+        finish_factor=finish_factor(stage.settings, internal=mesh.internal),
         work_hardening_factor=member.work_hardening,
         notch_sensitivity_factor=number(notch_sensitivity_factor(member.steel, member.form.notch)),
         roughness_factor=roughness_factor(member.steel, data.root_roughness_um),
@@ -243,3 +248,63 @@ def _gear(stage: Stage, mesh: Mesh, member: Member, loads: Safeties, number: Cal
         static_root_life_factor=ROOT_CURVES[member.steel.treatment].static_factor,
         static_notch_factor=number(static_notch_factor(member.steel, member.form)),
     )
+
+
+_POSITIONS, _POINTS = 600, 3000
+"""Of a mate over two of its pitches, and of a root with its flank; both together miss 0.2 um at most."""
+_TOUCH_MM = 5e-4
+"""Less is a touch: a corner slides along its mate's flank anyway."""
+
+
+def tip_depths_mm(gears: GearSet) -> dict[tuple[str, str], float]:
+    """Return how deep the tips of a gear reach into the metal at the roots of its mate: (tip, root) -> depth.
+
+    Of one set, as drawn, with the driving flanks in contact; along the normal to the root.
+    """
+    sun, planet, ring = gears.sun(), gears.planet(), gears.ring()
+    pairs: dict[tuple[str, str], tuple[ExternalGear | InternalGear, ExternalGear | InternalGear]] = {
+        ("sun", "planet"): (sun, planet),
+        ("planet", "sun"): (planet, sun),
+        ("ring", "planet"): (ring, planet),
+        ("planet", "ring"): (planet, ring),
+    }
+    return {names: _tip_depth_mm(*pair, float(gears.carrier_radius_mm)) for names, pair in pairs.items()}
+
+
+def _tip_depth_mm(tip: ExternalGear | InternalGear, root: ExternalGear | InternalGear, distance_mm: float) -> float:
+    """Follow a corner of a tooth that rolls through a space, whose middle is the x axis of a mate that stands still."""
+    inner = isinstance(tip, InternalGear) or isinstance(root, InternalGear)
+    module, teeth, mates = float(root.module_mm), float(root.teeth), float(tip.teeth)
+    half = float(half_angle(tip, tip.tip_radius_mm))
+    if isinstance(tip, InternalGear):
+        half = np.pi / mates - half
+    turn = 4.0 * np.pi / teeth * np.linspace(-1.0, 1.0, _POSITIONS)
+    taken = float(root.backlash_mm + tip.backlash_mm) / (module * mates)
+    pointing = (
+        half + taken + turn * (1.0 - teeth / mates) if inner else np.pi - half - taken + turn * (1.0 + teeth / mates)
+    )
+    centre = -distance_mm if isinstance(tip, InternalGear) else distance_mm
+    corner = centre * np.exp(1j * turn) + float(tip.tip_radius_mm) * np.exp(1j * pointing)
+    edge = _edge(root)
+    order = np.argsort(np.abs(edge))
+    beside = np.interp(np.abs(corner), np.abs(edge)[order], np.angle(edge)[order], left=0.0, right=0.0)
+    low, high = sorted((float(root.tip_radius_mm), float(root.root_radius_mm)))
+    within = (np.abs(corner) < high) if isinstance(root, ExternalGear) else (np.abs(corner) > low)
+    inside = corner[within & (np.angle(corner) > beside) & (np.angle(corner) < np.pi / teeth)]
+    depth_mm = float(max((np.abs(edge - point).min() for point in inside), default=0.0))
+    return depth_mm if depth_mm > _TOUCH_MM else 0.0
+
+
+def _edge(gear: ExternalGear | InternalGear) -> NDArray[np.complex128]:
+    """Return points along one side of a space, root and flank, as complex numbers; its middle is the real axis."""
+    form = float(gear.form_radius_mm)
+    radii = np.linspace(form, float(gear.tip_radius_mm), _POINTS)
+    if isinstance(gear, ExternalGear):
+        curve = gear.root_curve_mm(_POINTS)
+        return np.concatenate(
+            [curve[:, 0] + 1j * curve[:, 1], radii * np.exp(1j * (np.pi / gear.teeth - half_angle(gear, radii)))]
+        )
+    centre = float(gear.root_radius_mm - gear.fillet_mm) * np.exp(1j * float(gear.fillet_angle_rad))
+    first = np.angle(form * np.exp(1j * float(half_angle(gear, form))) - centre)
+    arc = centre + float(gear.fillet_mm) * np.exp(1j * np.linspace(float(gear.fillet_angle_rad), first, _POINTS))
+    return np.concatenate([arc, radii * np.exp(1j * half_angle(gear, radii))])

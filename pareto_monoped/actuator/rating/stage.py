@@ -193,7 +193,8 @@ class Stage:
         )
         worn = 0.5 * (load.face_running_in(mesh.pinion.steel) + load.face_running_in(mesh.wheel.steel))
         left_um = (1.0 - worn) * (elastic_um + made)
-        face = load.face_load_factor(left_um, load.FACE_STIFFNESS_SHARE * stiffness, mean)
+        crowning_um = self.settings.parts.rating.planet_crowning_um
+        face = load.face_load_factor(left_um, load.FACE_STIFFNESS_SHARE * stiffness, mean, crowning_um)
         flank, root = load.transverse_load_factors(mean * face, stiffness, mesh.pitch_deviation_um, mesh.contact_ratio)
         root_face = load.root_face_load_factor(face, width_mm, module)
         return MeshLoad(mean, dynamic, face, root_face, flank, root, stiffness, left_um)
@@ -245,6 +246,12 @@ def safeties_of(carries: Safeties, acting: Safeties) -> Safeties:
         np.sqrt(carries.overload_flank / acting.overload_flank),
         carries.overload_root / acting.overload_root,
     )
+
+
+def finish_factor(settings: ActuatorSettings, *, internal: bool) -> float:
+    """Return Z_L Z_v Z_R of a mesh, which the rougher of its gears decides."""
+    data = settings.parts.rating
+    return data.ring_finish_factor if internal else data.flank_finish_factor
 
 
 def required(settings: ActuatorSettings) -> Safeties:

@@ -127,7 +127,7 @@ def service_sheet(actuator: Actuator, settings: ActuatorSettings, service: Servi
     """Return the service sheet of an actuator."""
     service = service or settings.service
     gears, materials = actuator.gears, settings.materials
-    thinning_mm = float(settings.tooth_thinning_mm(gears.module_mm))
+    thinning_mm = float(gears.backlash_mm)
     at = layout(actuator.motor, actuator.family, gears, actuator.face_width_mm, settings)
     bearings = bearing_services(actuator, at, settings, service)
     # The main bearing turns once; at the knee it carries more than at the hip.

@@ -1,4 +1,4 @@
-"""The leg moves freely through its working ranges, its end stops meet at their ends, and its gears mesh.
+"""The leg moves freely through its working ranges, and its end stops meet at their ends.
 
 Joints turn about parallel axes. Two parts can therefore only meet if their extents along the axis overlap and so do
 their distances from the joint's axis; pairs that can meet are intersected at steps through the joint's range. Beyond
@@ -13,12 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.cad.assembly import Instance, Matrix, Pose, body_frames, instances, turn_y
-from pareto_monoped.cad.check.overlap import TOUCH_MM, Overlap, PlacedMesh, boxes_meet, deepest, near, overlap_of
+from pareto_monoped.cad.check.overlap import TOUCH_MM, Overlap, PlacedMesh, boxes_meet, deepest, overlap_of
 from pareto_monoped.cad.check.result import (
     DEPTH_MM,
     END_STOP,
     FREE_MOTION,
-    GEAR_MESH,
     SHANK_CLEARANCE,
     Check,
     Finding,
@@ -37,7 +36,6 @@ _ZERO = Pose(hip_rad=0.0, knee_rad=0.0)
 
 _Solid = tuple[Instance, m3.Manifold]
 Bodies = dict[str, list[_Solid]]
-STEPS = 8  #: Positions of the gears within one tooth of the sun, after which all repeats.
 
 
 def check_free_motion(product: Product) -> tuple[Check, Check, Check]:
@@ -205,28 +203,3 @@ def _may_meet(one: PlacedMesh, other: PlacedMesh, reach: Mapping[str, tuple[floa
         return False
     (least, greatest), (other_least, other_greatest) = reach[one.name], reach[other.name]
     return least < other_greatest - DEPTH_MM and other_least < greatest - DEPTH_MM
-
-
-def check_gear_mesh(product: Product) -> Check:
-    """Look at the gears of both actuators."""
-    return deepest(GEAR_MESH, f"sun, planets and ring in {STEPS} steps of one tooth", in_gear_cycle(product))
-
-
-def in_gear_cycle(product: Product) -> list[Overlap]:
-    """Return overlaps of sun, planets and ring of both actuators while the sun turns by one tooth."""
-    found: list[Overlap] = []
-    for name, actuator in (("hip_actuator", product.robot.hip), ("knee_actuator", product.robot.knee)):
-        if name == "knee_actuator" and actuator is product.robot.hip:
-            break
-        bodies = {instance.name: unique.mesh.body for instance, unique in product.placed() if instance.unit == name}
-        step = 2.0 * np.pi / (float(actuator.gears.sun_teeth) * actuator.ratio * STEPS)
-        for k in range(STEPS):
-            pose = Pose(hip_rad=k * step, knee_rad=k * step)
-            meshing = [
-                PlacedMesh.of(i.name, bodies[i.name], i.moves)
-                for i in instances(product.robot, pose, only=name)
-                if i.part.role is Role.GEAR
-            ]
-            for one, other in near(meshing):
-                found += overlap_of(one, other, f"in step {k} of the gears' cycle")
-    return found

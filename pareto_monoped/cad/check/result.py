@@ -44,7 +44,8 @@ Each entry ij of the tensor is compared with the square root of ii times jj, whi
 DEPTH_MM = 0.02
 """Mean depth below which an overlap is the facets of two fitting cylinders, which lie within 0.01 mm of the circle."""
 OVERLAP = Limit(name="no two parts overlap", value=DEPTH_MM, unit="mm deep")
-GEAR_MESH = Limit(name="gears mesh", value=DEPTH_MM, unit="mm deep")
+GEAR_MESH = Limit(name="gears mesh on their driving flanks", value=0.002, unit="mm too early")
+"""Splines of teeth lie within 0.0005 mm of the involute; a tip in a root is early by as much as it overlaps."""
 FREE_MOTION = Limit(name="the leg moves freely", value=DEPTH_MM, unit="mm deep")
 END_STOP = Limit(name="end stops meet at the ends of the ranges", value=0.5, unit="deg")
 """Half a degree of the simulated knee is 0.5 mm of a bumper's 20 mm. A stop that never meets counts as 180 degrees."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from pareto_monoped.cad.check import free_motion, mass, overlap, retention, screws, watertight
+from pareto_monoped.cad.check import free_motion, gear_mesh, mass, overlap, retention, screws, watertight
 from pareto_monoped.cad.check.mass import weigh_bodies, weigh_parts
 from pareto_monoped.cad.check.result import STRENGTH, VALID, Check, Finding, count_of, worst_of
 from pareto_monoped.cad.product import Product
@@ -44,7 +44,7 @@ def run_checks(
     # First what does not need the solids, which the kernel's process is building meanwhile.
     without_solids = (
         overlap.check(product),
-        free_motion.check_gear_mesh(product),
+        gear_mesh.check(product),
         *free_motion.check_free_motion(product),
         *screws.check_bolts(product),
         screws.check_seats(product),

@@ -128,11 +128,16 @@ def gear_rows(
         ("Module", number(float(gear.module_mm))),
         ("Pressure angle", f"{number(round(float(np.degrees(gear.pressure_angle_rad)), 3))}°"),
         ("Helix angle", "0°"),
-        ("Basic rack", f"ISO 53, h {DEDENDUM:g} m, fillet {FILLET:g} m"),
+        (
+            ("Roots", f"wire-cut along the drawing, R {number(round(float(gear.fillet_mm), 3))}")
+            if isinstance(gear, InternalGear)
+            else ("Basic rack", f"ISO 53, h {DEDENDUM:g} m, fillet {FILLET:g} m")
+        ),
         ("Profile shift x, outwards", number(round(float(gear.shift), 4))),
         ("Pitch diameter", number(2.0 * float(gear.pitch_radius_mm))),
-        ("Tip diameter", number(2.0 * float(gear.tip_radius_mm))),
-        ("Root diameter", number(2.0 * float(gear.root_radius_mm))),
+        ("Tip diameter", number(round(2.0 * float(gear.tip_radius_mm), 3))),
+        ("Form diameter, involute from there", number(round(2.0 * float(gear.form_radius_mm), 3))),
+        ("Root diameter", number(round(2.0 * float(gear.root_radius_mm), 3))),
         measured,
         ("Tooth thickness tolerance", f"DIN 3967, series {series}"),
         ("Accuracy of the teeth", f"ISO 1328-1 class {grade or 8}"),
@@ -153,6 +158,7 @@ def _making_rows(making: ToothMaking, hardness: str) -> list[tuple[str, str]]:
         ("Hardness of flanks", hardness),
         ("Hardness of the core", making.core_hardness),
         *([(layer[making.layer], making.layer_text)] if making.layer else []),
+        *([("Crowning of the flanks", f"{making.crowning_um:g} µm")] if making.crowning_um else []),
         ("Roughness of flanks, fillets", f"Rz {making.flank_rz_um:g}, {making.root_rz_um:g} µm at most"),
         ("Radial runout to the datum axis", f"{making.runout_mm:.3f} at most"),
     ]

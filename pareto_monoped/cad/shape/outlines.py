@@ -1,8 +1,6 @@
 """Flat shapes as closed curves of lines, arcs and splines, and polygons along them. Millimetres, radians.
 
-Involute spur gears follow ISO 21771 (involute function, tooth thickness at any radius). The root is an arc tangent to
-the root circle and to the flank, of 0.38 module by default, the root radius of the basic rack of ISO 53. A curve
-parallel to an involute is the same involute turned by (distance / base radius), which places the fillet's centre.
+The outlines of gears follow their records in ``geometry.gears``.
 """
 
 from collections.abc import Sequence
@@ -12,12 +10,12 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.geometry.gears import FILLET, ExternalGear, InternalGear
-from pareto_monoped.geometry.shapes import Arc, Circle, Line, Path, Pattern, Shape, Spread
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear, half_angle
+from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Pattern, Shape, Spread
 
 Points = NDArray[np.float64]
 _COARSEST_STEP = 2.0 * np.pi / 48  # keeps the volume of thin bolts within 0.3 percent
-_FLANK_POINTS = 8
+_FLANK_POINTS, _ROOT_POINTS = 8, 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,51 +100,16 @@ def _arc_points(arc: Arc, tolerance_mm: float) -> Points:
     return centre + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Teeth:
-    """What an outline needs of a gear, external or internal (``inner``: teeth point to the axis).
-
-    For an internal gear the outline bounds the opening, whose tooth spaces have the form of an external gear's teeth.
-    """
-
-    count: int  #: number of teeth
-    module_mm: float  #: pitch diameter over teeth
-    tip_radius_mm: float
-    root_radius_mm: float
-    backlash_mm: float = 0.0  #: by how much each tooth is thinner than half the pitch, along the pitch circle
-    fillet_mm: float  #: radius of the root
-    pressure_angle_rad: float = np.radians(20.0)  #: on the pitch circle
-    phase_rad: float = 0.0  #: angle of the middle of a tooth (external) or of a space (internal)
-    inner: bool = False  #: an internal gear
-    shift: float = 0.0  #: profile shift over module, positive outwards
-
-    @property
-    def pitch_radius_mm(self) -> float:
-        """Radius on which both wheels roll."""
-        return 0.5 * self.count * self.module_mm
-
-    @property
-    def base_radius_mm(self) -> float:
-        """Radius of the circle that the involute unwinds from."""
-        return self.pitch_radius_mm * float(np.cos(self.pressure_angle_rad))
-
-    def half_angle(self, radius_mm: float) -> float:
-        """Half the angle that a tooth (external) or a space (internal) spans at a radius, at least the base radius."""
-        play = self.backlash_mm if self.inner else -self.backlash_mm
-        shifted = 2.0 * self.shift * self.module_mm * np.tan(self.pressure_angle_rad)
-        at_pitch = (0.5 * np.pi * self.module_mm + play + shifted) / (2.0 * self.pitch_radius_mm)
-        return float(at_pitch + _inv(self.pressure_angle_rad) - _inv(_angle(self.base_radius_mm, radius_mm)))
-
-
-def outline(teeth: Teeth) -> Contour:
-    """Return the closed outline of a gear, anticlockwise; ``ValueError`` if its fillet does not fit."""
-    half = _half_space(teeth) if teeth.inner else _half_tooth(teeth)
+@lru_cache(maxsize=64)
+def _gear(gear: ExternalGear | InternalGear) -> Contour:
+    """Return the closed outline of a gear, anticlockwise; ``ValueError`` if a ring's fillets do not fit."""
+    half = _half_space(gear) if isinstance(gear, InternalGear) else _half_tooth(gear)
     pieces: list[Piece] = []
-    turn = 2.0 * np.pi / teeth.count
-    radii = teeth.tip_radius_mm, teeth.root_radius_mm
-    far, near = radii[::-1] if teeth.inner else radii
-    for k in range(teeth.count):
-        middle = teeth.phase_rad + k * turn
+    count = int(gear.teeth)
+    turn = 2.0 * np.pi / count
+    near, far = sorted((float(gear.tip_radius_mm), float(gear.root_radius_mm)))
+    for k in range(count):
+        middle = float(gear.phase_rad) + k * turn
         pieces += [_placed(piece, middle, mirror=True) for piece in half.outward]
         pieces.append(Arc(0.0, 0.0, far, middle - half.far_angle, middle + half.far_angle))
         pieces += [_placed(piece, middle, mirror=False) for piece in reversed(half.outward)]
@@ -156,7 +119,7 @@ def outline(teeth: Teeth) -> Contour:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Half:
-    """The lower side of a tooth or space around the x axis, mirrored to the upper side: pieces from near to far.
+    """The upper side of a tooth or space around the x axis: pieces from near to far.
 
     ``far_angle`` and ``near_angle`` are where they meet the circles of largest and least radius.
     """
@@ -166,51 +129,37 @@ class _Half:
     near_angle: float
 
 
-def _half_tooth(t: Teeth) -> _Half:
-    """Return fillet and flank (with a radial line below the base circle), from the root outward; at positive angles."""
-    base, rho = t.base_radius_mm, t.fillet_mm
-    centre_radius = t.root_radius_mm + rho
-    roll = np.sqrt(max(centre_radius**2 - base**2, 0.0)) - rho
-    foot: tuple[Line, ...] = ()
-    if centre_radius > base and roll >= 0.0:
-        start = float(np.hypot(base, roll))
-        centre_angle = t.half_angle(centre_radius) + rho / base
-        touch = _polar(start, t.half_angle(start))
-    else:
-        start = base
-        side = t.half_angle(base)
-        centre_angle = side + float(np.arcsin(rho / centre_radius))
-        touch_radius = float(np.sqrt(centre_radius**2 - rho**2))
-        if touch_radius > base:
-            raise ValueError(f"a fillet of {rho} mm reaches above the base circle of {t.count} teeth")
-        touch = _polar(touch_radius, side)
-        foot = (Line(*touch, *_polar(base, side)),)
-    if centre_angle > np.pi / t.count:
-        raise ValueError(f"a fillet of {rho} mm does not fit between {t.count} teeth of module {t.module_mm}")
-    fillet = _arc(_polar(centre_radius, centre_angle), _polar(t.root_radius_mm, centre_angle), touch)
-    outward: tuple[Piece, ...] = (fillet, *foot, _flank(t, start, t.tip_radius_mm))
-    return _Half(outward=outward, far_angle=t.half_angle(t.tip_radius_mm), near_angle=centre_angle)
+def _half_tooth(gear: ExternalGear) -> _Half:
+    """Return root and flank of a tooth; the root's record has the middle of the space for its x axis."""
+    root = _turned(gear.root_curve_mm(_ROOT_POINTS) * [1.0, -1.0], np.pi / float(gear.teeth))
+    flank = _flank(gear, float(gear.form_radius_mm), float(gear.tip_radius_mm))
+    return _Half(
+        outward=(Spline(root), flank),
+        far_angle=float(half_angle(gear, gear.tip_radius_mm)),
+        near_angle=float(np.arctan2(root[0, 1], root[0, 0])),
+    )
 
 
-def _half_space(t: Teeth) -> _Half:
-    """Return flank and fillet of an internal gear's space, from the teeth's tips outward; at positive angles."""
-    base, rho = t.base_radius_mm, t.fillet_mm
-    centre_radius = t.root_radius_mm - rho
-    touch_radius = float(np.hypot(base, np.sqrt(centre_radius**2 - base**2) + rho))
-    centre_angle = t.half_angle(centre_radius) - rho / base
+def _half_space(gear: InternalGear) -> _Half:
+    """Return flank and fillet of a ring's space."""
+    rho, root = float(gear.fillet_mm), float(gear.root_radius_mm)
+    centre_angle, form = float(gear.fillet_angle_rad), float(gear.form_radius_mm)
     if centre_angle < 0.0:
-        raise ValueError(f"a fillet of {rho} mm does not fit into the spaces of {t.count} internal teeth")
-    touch = _polar(touch_radius, t.half_angle(touch_radius))
-    fillet = _arc(_polar(centre_radius, centre_angle), touch, _polar(t.root_radius_mm, centre_angle))
-    outward = (_flank(t, t.tip_radius_mm, touch_radius), fillet)
-    return _Half(outward=outward, far_angle=centre_angle, near_angle=t.half_angle(t.tip_radius_mm))
+        raise ValueError(f"a fillet of {rho} mm does not fit into the spaces of {gear.teeth} internal teeth")
+    touch = _polar(form, float(half_angle(gear, form)))
+    fillet = _arc(_polar(root - rho, centre_angle), touch, _polar(root, centre_angle))
+    tip = float(gear.tip_radius_mm)
+    return _Half(
+        outward=(_flank(gear, tip, form), fillet), far_angle=centre_angle, near_angle=float(half_angle(gear, tip))
+    )
 
 
-def _flank(t: Teeth, start_mm: float, end_mm: float) -> Spline:
+def _flank(gear: ExternalGear | InternalGear, start_mm: float, end_mm: float) -> Spline:
     """Return points of the involute, evenly spaced in roll angle, along which it is smoothest."""
-    base = t.base_radius_mm
+    base = float(gear.base_radius_mm)
     rolls = np.linspace(np.sqrt(max(start_mm**2 - base**2, 0.0)), np.sqrt(end_mm**2 - base**2), _FLANK_POINTS)
-    return Spline(np.array([_polar(r, t.half_angle(r)) for r in np.hypot(base, rolls)]))
+    radii = np.hypot(base, rolls)
+    return Spline(_polar(radii, half_angle(gear, radii)).T)
 
 
 def _placed(piece: Piece, angle: float, *, mirror: bool) -> Piece:
@@ -244,16 +193,8 @@ def _arc(centre: Points, first: Points, last: Points) -> Arc:
     return Arc(float(centre[0]), float(centre[1]), float(np.hypot(*(first - centre))), a, a + sweep)
 
 
-def _polar(radius: float, angle: float) -> Points:
+def _polar(radius: Numbers, angle: Numbers) -> Points:
     return np.array([radius * np.cos(angle), radius * np.sin(angle)])
-
-
-def _inv(angle: float) -> float:
-    return float(np.tan(angle) - angle)
-
-
-def _angle(base_mm: float, radius_mm: float) -> float:
-    return float(np.arccos(min(base_mm / radius_mm, 1.0)))
 
 
 def contours(shape: Shape) -> tuple[Contour, ...]:
@@ -299,22 +240,3 @@ def _contains(points: Points, point: Points) -> bool:
 def all_polygons(shapes: Sequence[Shape], tolerance_mm: float = 0.01) -> list[Points]:
     """Return one polygon per contour of the shapes."""
     return [polygon(contour, tolerance_mm) for shape in shapes for contour in contours(shape)]
-
-
-@lru_cache(maxsize=64)
-def _gear(gear: ExternalGear | InternalGear) -> Contour:
-    module = float(gear.module_mm)
-    return outline(
-        Teeth(
-            count=int(gear.teeth),
-            module_mm=module,
-            tip_radius_mm=float(gear.tip_radius_mm),
-            root_radius_mm=float(gear.root_radius_mm),
-            backlash_mm=float(gear.backlash_mm),
-            fillet_mm=FILLET * module,
-            pressure_angle_rad=gear.pressure_angle_rad,
-            phase_rad=float(gear.phase_rad),
-            inner=isinstance(gear, InternalGear),
-            shift=float(gear.shift),
-        )
-    )

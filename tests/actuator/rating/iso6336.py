@@ -1,20 +1,27 @@
 """ISO 6336 once more, plainly and slowly, one gear set at a time: an oracle for ``pareto_monoped.actuator.rating``.
 
-Written from the standard's equations and from geometry, with other means than the product: the fillet is traced as the
-envelope of the rack's rounding and the 30 or 60 degree tangent is found by bisection; contact stress is Hertz' at the
-point in question; the pin is a beam solved by stiffness matrices; the sun's twist is summed slice by slice. Profile
-shifts are those at which the teeth fill the working pitch circles, found by bisection.
-Lengths in mm, forces in N, stresses in MPa.
+Written from the standard's equations, with other means than the product: teeth are those of ``teeth``; contact stress
+is Hertz' at the point in question; the pin is a beam solved by stiffness matrices; the sun's twist is summed slice by
+slice; crowned teeth are springs side by side. Lengths in mm, forces in N, stresses in MPa.
 """
 
-from dataclasses import dataclass
 from functools import cache
-from math import atan2, ceil, cos, hypot, log, pi, sin, sqrt, tan
+from math import ceil, cos, hypot, log, pi, sin, sqrt
 
 import numpy as np
 
-ALPHA = pi / 9.0
-RACK_ADDENDUM, RACK_DEDENDUM, RACK_FILLET = 1.0, 1.25, 0.38
+from tests.actuator.rating.teeth import (
+    ALPHA,
+    bisect,
+    contact_ratio,
+    drawn,
+    form_and_notch,
+    generated,
+    line_of_action,
+    on_path,
+    thinning,
+)
+
 E_STEEL, NU_STEEL = 206000.0, 0.3
 K1 = {5: 7.5, 6: 14.9, 7: 26.8}
 STATIC_LIFE = {
@@ -25,180 +32,6 @@ STATIC_LIFE = {
     ("through_hardened", "flank"): (1e5, 1.6, 5e7),
     ("through_hardened", "root"): (1e4, 2.5, 3e6),
 }
-
-
-# DIN 3967, series 23: tolerance of the tooth's thickness up to a reference diameter.
-THINNER = ((10.0, 0.008), (50.0, 0.012), (125.0, 0.016), (280.0, 0.020))
-
-
-def inv(angle):
-    return tan(angle) - angle
-
-
-def bisect(function, low, high):
-    """Root of a function that changes its sign between two places, to the last bit."""
-    below = function(low) > 0.0
-    assert below != (function(high) > 0.0)
-    while low < (middle := 0.5 * (low + high)) < high:
-        if (function(middle) > 0.0) == below:
-            low = middle
-        else:
-            high = middle
-    return middle
-
-
-@dataclass(frozen=True)
-class Gear:
-    """A gear of module 1.
-
-    ``x`` moves its profile outwards, also in a ring; ``cut`` shortens the tips of a sun or a planet.
-    """
-
-    teeth: int
-    x: float = 0.0
-    cut: float = 0.0
-    internal: bool = False
-
-    @property
-    def base(self):
-        return self.teeth / 2.0 * cos(ALPHA)
-
-    @property
-    def tip(self):
-        reach = RACK_ADDENDUM - self.cut
-        return self.teeth / 2.0 + self.x + (-reach if self.internal else reach)
-
-    def thickness(self, radius):
-        """Of a tooth (external gear) or a space (ring) at a radius, along the arc: the involute unwound."""
-        angle = sqrt((radius / self.base) ** 2 - 1.0)
-        at_reference = (pi + 4.0 * self.x * tan(ALPHA)) / self.teeth
-        return radius * (at_reference + 2.0 * (inv(ALPHA) - (angle - atan2(angle, 1.0))))
-
-
-def line_of_action(pinion, wheel, distance):
-    """Distance between the points where the line of action touches both base circles."""
-    both = wheel.base - pinion.base if wheel.internal else wheel.base + pinion.base
-    return sqrt(distance**2 - both**2)
-
-
-@cache  # loops over modules, numbers of planets and face widths ask again and again
-def shifted(zs, zp, zr, y, x):
-    """Sun, planet and ring without backlash at a centre distance (zs + zp) / 2 + y, the sun shifted by x."""
-    distance = (zs + zp) / 2.0 + y
-
-    def free_arc(first, second):
-        """Pitch less both teeth, or space less tooth, on the working pitch circles."""
-        sign = -1.0 if second.internal else 1.0
-        radius = distance * first.teeth / (second.teeth + sign * first.teeth)
-        mate = radius * second.teeth / first.teeth
-        if second.internal:
-            return second.thickness(mate) - first.thickness(radius)
-        return 2.0 * pi * radius / first.teeth - first.thickness(radius) - second.thickness(mate)
-
-    xp = bisect(lambda one: free_arc(Gear(zs, x), Gear(zp, one)), -3.0, 3.0)
-    xr = bisect(lambda one: free_arc(Gear(zp, xp), Gear(zr, one, internal=True)), -5.0, 5.0)
-    cut = x + xp - y
-    return Gear(zs, x, cut), Gear(zp, xp, cut), Gear(zr, xr, internal=True), distance
-
-
-@dataclass
-class Fillet:
-    """The fillet of one tooth, module 1, with the tooth's centre line as y axis and the gear's centre as origin."""
-
-    teeth: int
-    internal: bool
-    x: float = 0.0
-
-    def point(self, shift):
-        """Point and direction of the normal where the rack has moved by ``shift`` along the pitch line.
-
-        The rounding's centre, the pitch point and the point of contact lie on one line.
-        """
-        sign = -1.0 if self.internal else 1.0
-        radius = sign * self.teeth / 2.0
-        half_rack_tooth = pi / 4.0 - RACK_DEDENDUM * tan(ALPHA) - RACK_FILLET * (1.0 - sin(ALPHA)) / cos(ALPHA)
-        centre = (half_rack_tooth + shift, sign * self.x - (RACK_DEDENDUM - RACK_FILLET))
-        far = hypot(*centre)
-        normal = (centre[0] / far, centre[1] / far)
-        touch = (centre[0] + RACK_FILLET * normal[0], centre[1] + RACK_FILLET * normal[1])
-        # The gear's centre lies below the pitch point (external) or above it (internal). Turn the gear back, then turn
-        # the middle of the tooth on the right, half a pitch away, onto the y axis.
-        turn = shift / radius + pi / (sign * self.teeth)
-        x, y = touch[0], touch[1] + radius
-        return (
-            (x * cos(turn) - y * sin(turn), x * sin(turn) + y * cos(turn)),
-            (normal[0] * cos(turn) - normal[1] * sin(turn), normal[0] * sin(turn) + normal[1] * cos(turn)),
-        )
-
-    def tangent_to_axis(self, shift):
-        """Angle between the fillet's tangent and the tooth's centre line, 90 degrees at the bottom of the space."""
-        _, (nx, ny) = self.point(shift)
-        return atan2(-ny, nx)
-
-    def critical(self):
-        """Half thickness, height and fillet radius of the critical section."""
-        wanted = pi / 3.0 if self.internal else pi / 6.0
-        # At the first shift the rounding's centre is below the pitch point; its normal then points down the space.
-        half = pi / 4.0 - RACK_DEDENDUM * tan(ALPHA) - RACK_FILLET * (1.0 - sin(ALPHA)) / cos(ALPHA)
-        shift = bisect(lambda s: self.tangent_to_axis(s) - wanted, -half, -half + 3.0)
-        step = 1e-4
-        (x0, y0), (x1, y1), (x2, y2) = (self.point(shift + k * step)[0] for k in (-1, 0, 1))
-        dx, dy, ddx, ddy = (x2 - x0) / 2, (y2 - y0) / 2, x2 - 2 * x1 + x0, y2 - 2 * y1 + y0
-        return abs(x1), abs(y1), (dx * dx + dy * dy) ** 1.5 / abs(dx * ddy - dy * ddx)
-
-
-def on_path(pinion, wheel, distance):
-    """Where contact begins (the wheel's tip) and ends (the pinion's), as the pinion's radii of curvature, module 1."""
-    wheel_curvature = sqrt(wheel.tip**2 - wheel.base**2)
-    line = line_of_action(pinion, wheel, distance)
-    begin = wheel_curvature - line if wheel.internal else line - wheel_curvature
-    return begin, sqrt(pinion.tip**2 - pinion.base**2)
-
-
-def contact_ratio(pinion, wheel, distance):
-    begin, end = on_path(pinion, wheel, distance)
-    return (end - begin) / (pi * cos(ALPHA))
-
-
-def thinning(teeth, module):
-    """By how much a tooth of a rated gear may be thinner than without backlash, in mm: drawn, and by tolerance."""
-    return 0.03 * module + next(tolerance for largest, tolerance in THINNER if teeth * module <= largest)
-
-
-def generated(gear, thinner):
-    """The gear whose teeth are thinner (ring: whose spaces are wider) on the reference circle, by shift alone."""
-    change = thinner if gear.internal else -thinner
-    wanted = gear.thickness(gear.teeth / 2.0) + change
-    x = bisect(lambda one: Gear(gear.teeth, one).thickness(gear.teeth / 2.0) - wanted, gear.x - 1.0, gear.x + 1.0)
-    return Gear(gear.teeth, x, internal=gear.internal)
-
-
-@cache  # loops over face widths ask again and again
-def form_and_notch(gear, mate, distance, thinner=0.0):
-    """Y_F, Y_S and q_s of a gear whose teeth are thinner by so many modules; tips and contact as without backlash."""
-    made = generated(gear, thinner)
-    pitch = pi * cos(ALPHA)
-    if gear.internal:
-        begin, end = on_path(mate, gear, distance)
-        # Single contact nearest to the ring's tip: one base pitch before the pair leaves at the planet's tip. Curvature
-        # of the ring is that of the planet plus the distance of the base circles' tangent points.
-        curvature = line_of_action(mate, gear, distance) + end - pitch
-    else:
-        begin, end = on_path(gear, mate, distance)
-        curvature = begin + pitch
-    angle = atan2(curvature, gear.base)
-    half_thickness, height, radius = Fillet(made.teeth, made.internal, made.x).critical()
-    half_tooth = (pi / 2.0 + (-2.0 if gear.internal else 2.0) * made.x * tan(ALPHA)) / gear.teeth
-    if gear.internal:
-        force_angle = angle + (half_tooth - inv(ALPHA) + inv(angle))
-        arm = height - gear.base / cos(force_angle)
-    else:
-        force_angle = angle - (half_tooth + inv(ALPHA) - inv(angle))
-        arm = gear.base / cos(force_angle) - height
-    chord = 2.0 * half_thickness
-    form = 6.0 * arm * cos(force_angle) / (chord**2 * cos(ALPHA))
-    slender, notch = chord / arm, chord / (2.0 * radius)
-    return form, (1.2 + 0.13 * slender) * notch ** (1.0 / (1.21 + 2.3 / slender)), notch
 
 
 def hertz_load(stress, pinion, wheel, distance, module, at_wheel):
@@ -331,6 +164,27 @@ def sun_lag(load, width, diameter, planets, slices=500):
     return float(np.sum(torque / (shear * polar)) * width / slices * diameter / 2.0)
 
 
+def springs(misalignment_um, stiffness, mean, crowning_um, count=4001):
+    """Greatest over mean load of springs side by side along a face whose mate is askew, and stands back at its ends."""
+    place = np.linspace(-1.0, 1.0, count)
+    gap = misalignment_um * (1.0 - place) / 2.0 + crowning_um * place**2
+    tributary = np.ones(count)
+    tributary[[0, -1]] = 0.5
+
+    def pressed(approach):
+        return stiffness * np.maximum(approach - gap, 0.0)
+
+    most = gap.max() + 1.1 * mean / stiffness
+    together = bisect(lambda approach: np.average(pressed(approach), weights=tributary) - mean, gap.min(), most)
+    loads = pressed(together)
+    k = int(np.argmax(loads))
+    if loads[k] <= loads[max(k - 1, 0)] or not 0 < k < count - 1:
+        return float(loads[k]) / mean
+    # The middle of the contact lies between springs: a parabola through the three most loaded ones.
+    before, middle, after = loads[k - 1 : k + 2]
+    return float(middle - (after - before) ** 2 / 8.0 / (before - 2.0 * middle + after)) / mean
+
+
 def mesh_loads(sets, data, width, meshes, over=None):
     """K factors of both meshes; ``sets`` holds what the gear set and motor give, ``data`` the settings.
 
@@ -365,11 +219,7 @@ def mesh_loads(sets, data, width, meshes, over=None):
             0.15 if steel.treatment != "through_hardened" else 320.0 / steel.flank_limit_mpa for steel in mesh["steels"]
         )
         left = (1.0 - run_in / 2.0) * (1e3 * (1.33 * twist + tilt * width) + hypot(*slopes))
-        # Load per width rises by c times the misalignment across the face, or over the part that still touches.
-        rise = 0.85 * one["stiff"] * left
-        one["K_Hb"] = (one["mean"] + rise / 2.0) / one["mean"]
-        if rise > 2.0 * one["mean"]:
-            one["K_Hb"] = sqrt(2.0 * rise / one["mean"])
+        one["K_Hb"] = springs(left, 0.85 * one["stiff"], one["mean"], data.planet_crowning_um)
         slender = width / (2.25 * sets["module"])
         one["K_Fb"] = one["K_Hb"] ** (slender**2 / (1.0 + slender + slender**2))
         run_in = sum(
@@ -412,7 +262,7 @@ def rate(gears, motor, width, settings, *, ring_wall, sun_bore, standing_at=None
         "gap": settings.parts.carrier.planet_clearance_mm,
         "pin": settings.parts.carrier.pin_diameter_mm,
     }
-    sun, planet, ring, sets["distance"] = shifted(zs, zp, zr, float(gears.centre_shift), float(gears.sun_shift))
+    sun, planet, ring, sets["distance"] = drawn(gears)
     planet_bore = settings.parts.gears.planet_bore_mm
     if data.planet_bearing == "needles":
         sets["gap"] = settings.parts.needles.washer_mm + settings.parts.needles.washer_play_mm
@@ -439,7 +289,7 @@ def rate(gears, motor, width, settings, *, ring_wall, sun_bore, standing_at=None
         for which, gear in enumerate(members):
             steel, mate = mesh["steels"][which], mesh["steels"][1 - which]
             own, other = (mesh["pinion"], mesh["wheel"]) if which == 0 else (mesh["wheel"], mesh["pinion"])
-            thinner = thinning(own.teeth, module) / module
+            thinner = thinning(own.teeth, module, gears.backlash_mm) / module
             form, notch_stress, notch = form_and_notch(own, other, sets["distance"], thinner)
             if gear == "ring":
                 rim = ring_wall / module
@@ -447,9 +297,11 @@ def rate(gears, motor, width, settings, *, ring_wall, sun_bore, standing_at=None
             elif bores[gear] is None:
                 y_b = 1.0
             else:
-                rim = (module * (own.teeth / 2.0 + own.x - 1.25) - bores[gear] / 2.0) / (2.25 * module)
+                root = own.teeth / 2.0 + generated(own, gears.backlash_mm / module).x - 1.25
+                rim = (module * root - bores[gear] / 2.0) / (2.25 * module)
                 y_b = 1.0 if rim >= 1.2 else 1.6 * log(2.242 / rim)
-            limits = permissible(gear, steel, mate, passes[gear], notch, notch_stress, data, duty)
+            finish = data.ring_finish_factor if name == "ring mesh" else data.flank_finish_factor
+            limits = permissible(gear, steel, mate, passes[gear], notch, notch_stress, data, duty, finish)
             duty_factor = data.application_factor * load["K_V"] * nominal
             if standing_at:  # the permissible stresses of a duty with a level above 1 are for the peak torque
                 duty_factor = nominal
@@ -493,7 +345,7 @@ def mean_stress(steel, notch_stress, levels, back):
     return haigh(sensitivity, -1.2 * min(sides) / max(sides))
 
 
-def permissible(gear, steel, mate, passes, notch, notch_stress, data, duty):
+def permissible(gear, steel, mate, passes, notch, notch_stress, data, duty, finish):
     """sigma_HG, sigma_FG, and both against static failure."""
     levels = list(zip(duty.torque_shares, duty.output_angles_rad, strict=True))
     kind = steel.treatment
@@ -523,7 +375,7 @@ def permissible(gear, steel, mate, passes, notch, notch_stress, data, duty):
         weight = 0.82 * (300.0 / steel.yield_mpa) ** 0.25
         static = (1.0 + weight * (notch_stress - 1.0)) / (1.0 + weight)
     return (
-        steel.flank_limit_mpa * z_nt * data.flank_finish_factor * z_w,
+        steel.flank_limit_mpa * z_nt * finish * z_w,
         2.0 * steel.root_limit_mpa * y_nt * support * rough * reversal,
         steel.flank_limit_mpa * STATIC_LIFE[kind, "flank"][1] * z_w,
         2.0 * steel.root_limit_mpa * STATIC_LIFE[kind, "root"][1] * static,

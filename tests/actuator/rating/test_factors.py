@@ -1,6 +1,7 @@
 """Single factors: points of the standard's own curves, closed forms and limits."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -35,6 +36,7 @@ from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.errors import InputError
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.materials import GEAR_GRADES, MATERIALS
+from tests.actuator.rating import iso6336
 
 CASE_HARDENED = GEAR_GRADES["case_hardened_18crnimo7_6"]
 TEMPERED = GEAR_GRADES["through_hardened_42crmo4"]
@@ -190,6 +192,9 @@ def test_single_contact_factors_by_hand():
     pinion, wheel = single_contact_factors(sun, planet, 1.61, np.radians(20.0))
     assert (pinion, wheel) == (pytest.approx(1.077, abs=1e-3), 1.0)
     assert single_contact_factors(planet, ring, 1.94, np.radians(20.0))[1] == 1.0
+    # Tips so short that one base pitch before the end of contact there is no flank.
+    stubs = (ExternalGear(teeth=12, module_mm=1.0, tip_shortening=0.8), ExternalGear(teeth=12, module_mm=1.0))
+    assert single_contact_factors(*stubs, 0.5, np.radians(20.0))[0] > 1e3
 
 
 def test_twist_of_a_single_mesh_is_the_torsional_share_of_iso_6336_1():
@@ -209,6 +214,30 @@ def test_a_planet_on_stiff_pins_does_not_tilt_and_on_soft_ones_the_meshes_hold_i
 def test_webs_hold_the_second_carrier_and_so_the_planets():
     tilt = [load.pin_tilt_um(400.0, 20.0, 1.1, 6.0, web, 10.0, MATERIALS.steel) for web in (0.0, 1e4, 1e5, 1e12)]
     assert tilt[0] > 1.3 * tilt[1] > 3.0 * tilt[2] > 1e6 * tilt[3]
+
+
+CROWNINGS, LOADS, ASKEW = (0.0, 1.0, 5.0, 12.0), (5.0, 60.0, 600.0), (0.0, 4.0, 19.0, 21.0, 39.0, 41.0, 120.0)
+
+
+@pytest.mark.parametrize(("crowning", "carries"), list(product(CROWNINGS, LOADS)))
+def test_face_load_factor_is_that_of_springs_side_by_side(crowning, carries):
+    """All of the face in contact, a part in the middle, or one end; askew, or not at all."""
+    together = load.face_load_factor(np.array(ASKEW), 15.0, carries, crowning)
+    alone = [load.face_load_factor(misalignment, 15.0, carries, crowning) for misalignment in ASKEW]
+    expected = [iso6336.springs(misalignment, 15.0, carries, crowning) for misalignment in ASKEW]
+    assert together == pytest.approx(alone, rel=1e-12)
+    assert alone == pytest.approx(expected, rel=2e-6)
+
+
+@pytest.mark.parametrize("misalignment", ASKEW)
+def test_springs_without_crowning_are_the_closed_form_of_iso_6336_1(misalignment):
+    """Clause 7.3.2: 1 + F c / (2 F_m / b) up to 2, beyond it the root of 2 F c / (F_m / b)."""
+    twice = misalignment * 15.0 / 60.0
+    expected = 1.0 + twice / 2.0 if twice <= 2.0 else (2.0 * twice) ** 0.5
+    assert iso6336.springs(misalignment, 15.0, 60.0, 0.0) == pytest.approx(expected, rel=1e-6)
+    assert load.face_load_factor(misalignment, 15.0, 60.0) == pytest.approx(expected, rel=1e-12)
+    # Next to none is as good as none.
+    assert load.face_load_factor(misalignment, 15.0, 60.0, 1e-4) == pytest.approx(expected, rel=1e-4)
 
 
 def test_face_load_factor_is_continuous_where_contact_parts():

@@ -24,12 +24,15 @@ def drawn(count, seed):
     rng = np.random.default_rng(seed)
     sun = rng.integers(18, 45, count)
     planet = (sun * rng.uniform(1.0, 3.0, count)).astype(int)
+    module = rng.choice([0.5, 0.6, 0.7, 0.8], count)
     return GearSet(
         sun_teeth=sun,
         planet_teeth=planet,
         ring_teeth=sun + 2 * planet,
-        module_mm=rng.choice([0.5, 0.6, 0.7, 0.8], count),
+        module_mm=module,
         planets=rng.integers(3, 6, count),
+        backlash_mm=SETTINGS.tooth_thinning_mm(module),
+        tips_fitted=True,
     )
 
 
@@ -78,7 +81,7 @@ def test_a_set_that_no_width_suits_gets_the_safest_of_those_tried():
     stage = build_stage(drawn(200, 6), load_motor("U12"), "ESSPG", SETTINGS)
     found = least_width_mm(stage)
     hopeless = ~keeps(stage, found)
-    assert 20 < hopeless.sum() < 180
+    assert 10 < hopeless.sum() < 190
     low = np.ceil(np.round(stage.width_low_mm / 0.1, 6))
     high = np.maximum(low, np.floor(np.round(stage.width_high_mm / 0.1, 6)))
     margins = []

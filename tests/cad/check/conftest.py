@@ -1,6 +1,6 @@
 import pytest
 
-from pareto_monoped.cad.check import free_motion, overlap, retention, screws, watertight
+from pareto_monoped.cad.check import free_motion, gear_mesh, overlap, retention, screws, watertight
 from pareto_monoped.cad.check.overlap import PlacedMesh
 from pareto_monoped.cad.check.run import run_checks
 from pareto_monoped.cad.product import Product
@@ -80,7 +80,8 @@ def examine(product, arrays, part_files, other_files):
         with pytest.MonkeyPatch.context() as patch:
             for module, *names in (
                 (overlap, "check"),
-                (free_motion, "check_gear_mesh", "check_free_motion"),
+                (free_motion, "check_free_motion"),
+                (gear_mesh, "check"),
                 (screws, "check_bolts", "check_seats"),
                 (retention, "check"),
                 (watertight, "check"),

@@ -17,7 +17,7 @@ NAMES = [
     *(f"{body} has the centre of mass that was simulated" for body in ("base", "thigh", "shank")),
     *(f"{body} has the inertia that was simulated" for body in ("base", "thigh", "shank")),
     "no two parts overlap",
-    "gears mesh",
+    "gears mesh on their driving flanks",
     "the leg moves freely",
     "end stops meet at the ends of the ranges",
     "the shank passes the base",

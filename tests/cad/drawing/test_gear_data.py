@@ -4,9 +4,13 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
+from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.drawing.data_tables import base_tangent_mm, between_pins_mm, gear_rows, measure, spanned_teeth
+from pareto_monoped.cad.drawing.part_sheet import round_part, round_tables
 from pareto_monoped.cad.shape.outlines import Contour, Spline, contours, polygon
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
+from pareto_monoped.geometry.roles import Group, Role
+from tests.geometry.cutting import string_flank
 
 EXTERNAL = [
     (18, 0.5, 0.0, 0.0),
@@ -132,3 +136,50 @@ def test_the_table_names_what_a_gear_cutter_needs():
     assert rows["Accuracy of the teeth"] == "ISO 1328-1 class 6"
     assert rows["Backlash of the pair, at least"] == "0.08"
     assert rows["Base tangent length W over 4 teeth"] == "5.327 to 5.339"
+    assert rows["Basic rack"] == "ISO 53, h 1.25 m, fillet 0.38 m"
+    assert rows["Tip diameter"] == "16"
+    assert rows["Root diameter"] == "13.64"  # 15 - 2.5 * 0.5, with the rack 0.055 mm farther in for thinner teeth
+
+
+FORM = "Form diameter, involute from there"
+
+
+@pytest.mark.parametrize(("teeth", "module", "thinning", "shift"), [row for row in EXTERNAL if row[0] > 19])
+def test_the_form_diameter_is_that_of_iso_21771(teeth, module, thinning, shift):
+    """Without undercut: d_Ff^2 = d_b^2 + (d sin a - 2 h / sin a)^2, where the rack's straight flank ends h deep."""
+    sine, reference = np.sin(np.radians(20.0)), teeth * module
+    straight = (1.25 - 0.38 * (1.0 - sine) - shift) * module + 0.5 * thinning / np.tan(np.radians(20.0))
+    assert reference * sine > 2.0 * straight / sine
+    gear = ExternalGear(teeth=teeth, module_mm=module, backlash_mm=thinning, shift=shift)
+    expected = np.hypot(reference * np.cos(np.radians(20.0)), reference * sine - 2.0 * straight / sine)
+    assert float(dict(gear_rows(gear, accuracy_class=6))[FORM]) == pytest.approx(expected, abs=6e-4)
+
+
+@pytest.mark.parametrize(("teeth", "module", "widening", "shift"), INTERNAL)
+def test_the_form_diameter_of_a_ring_is_where_a_disc_in_the_corner_touches_the_flank(teeth, module, widening, shift):
+    gear = InternalGear(teeth=teeth, module_mm=module, backlash_mm=widening, shift=shift)
+    rows = dict(gear_rows(gear, accuracy_class=6))
+    reference = 0.5 * teeth * module
+    base, root = reference * np.cos(np.radians(20.0)), reference + (1.25 + shift) * module
+    radius, angle = string_flank(base, base, root + module, 20001)
+    flank = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
+    # The space is on the side of greater angles.
+    low, high = angle[-1] - 0.01, angle[-1] + 0.1
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        off = np.hypot(*(flank - (root - 0.38 * module) * np.array([np.cos(middle), np.sin(middle)])).T)
+        low, high = (middle, high) if off.min() < 0.38 * module else (low, middle)
+    assert float(rows[FORM]) == pytest.approx(2.0 * radius[off.argmin()], abs=2e-3)
+    assert rows["Roots"] == f"wire-cut along the drawing, R {round(0.38 * module, 3):g}"
+    assert "Basic rack" not in rows
+
+
+def test_only_planets_are_crowned():
+    found = map_for("VT8020", "iso6336").lookup(6.0)
+    crowned = {}
+    for part in found.parts:
+        if part.role is Role.GEAR and part.group in (Group.ROTOR, Group.PLANET, Group.HOUSING):
+            texts = [label.text for paper in round_tables(part, round_part(part)) for label in paper.labels]
+            name = "Crowning of the flanks"
+            crowned[part.name] = texts[texts.index(name) + 1] if name in texts else None
+    assert crowned == {"sun": None, "planet": "5 µm", "ring": None}
