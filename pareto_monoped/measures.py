@@ -115,8 +115,8 @@ _EFFICIENCY = f"m g (H - {BASE_START_HEIGHT_M:g} m) / E"
 class JumpMeasures:
     """What n jumps measure, each of shape (n,): one field per measure, in the order of the database columns.
 
-    A measure is NaN where the jump failed, except for the mass of a robot that could be built. ``status`` is one of
-    ``jump.evaluate.STATUSES``; ``reason`` says why it is not ``ok``, and is empty where it is.
+    A measure is NaN where the jump failed, except for mass, cost and counts of parts of a robot that could be built.
+    ``status`` is one of ``jump.evaluate.STATUSES``; ``reason`` says why it is not ``ok``, and is empty where it is.
     """
 
     # fmt: off
@@ -216,6 +216,13 @@ class JumpMeasures:
     agility_m_per_s: Annotated[Floats, _more("m/s", 2, "vertical jumping agility",
         "vertical jumping agility: height gained over the time from the start of the push to the apex", reference=0.0,
         short="agility", place=50)]
+    cost_eur: Annotated[Floats, _less("EUR", 0, "cost",
+        "rough cost of all parts of one robot: stock, set-ups and hours of those made, list prices of those bought",
+        reference=20000.0, place=45)]
+    made_parts: Annotated[Floats, _less("1", 0, "parts made", "pieces of the robot that are made", reference=200.0,
+        short="made")]
+    bought_parts: Annotated[Floats, _less("1", 0, "parts bought", "pieces of the robot that are bought, such as screws",
+        reference=500.0, short="bought")]
     # fmt: on
 
 

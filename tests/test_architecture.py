@@ -48,7 +48,7 @@ INSPECTORS = {("strength", "actuator"), ("strength", "leg")}
 """The strength check rates the dimensions that parts are drawn with, so it may look at every module of these rooms."""
 MOST_AT_A_DOOR = 16
 """Modules that a room may show to others: about ten, and as many as the largest room shows today."""
-MOST_MODULES, MOST_IN_A_ROOM, MOST_LINES = 305, 40, 450
+MOST_MODULES, MOST_IN_A_ROOM, MOST_LINES = 307, 40, 450
 """Of the package, of a folder, of a module: what one engineer can hold in the head."""
 HEAVY = {
     "mujoco": ["jump"],
@@ -167,7 +167,7 @@ def test_doors_are_narrow_and_lead_somewhere():
             past_doors,
             ["pareto_monoped.actuator.rating.stage"],
         ),
-        ("cli", "def f():\n    from pareto_monoped.leg import chain", past_doors, ["pareto_monoped.leg.chain"]),
+        ("cli", "def f():\n    from pareto_monoped.leg import knee", past_doors, ["pareto_monoped.leg.knee"]),
         ("strength", "from pareto_monoped.leg.knee import knee_parts", past_doors, []),
         ("cli", "from pareto_monoped.leg.dimensions import leg_dimensions", past_doors, []),
     ],

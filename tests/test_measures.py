@@ -28,6 +28,7 @@ UNITS = {
     "_j": "J",
     "_s": "s",
     "_kg": "kg",
+    "_eur": "EUR",
     "_rad_per_s": "rad/s",
     "_m_per_s": "m/s",
     "_w": "W",

@@ -3,7 +3,7 @@
 Order of imports, lowest first: assumptions, bearings, rating.geometry, windings; motor, rating.load, settings; gearset,
 motors, needles; rating.capacity, webs; layout, rating.stage; features, rating.sheet, rating.strike, service.loads;
 external_housing, planet_bearings, rating.build; front, rating.width; external, internal, rules; actuator; ratiomap,
-service.bearing_life, service.stiffness; judge, service.sheet; explain, search.
+service.bearing_life, service.stiffness; judge, service.sheet; explain, search, tolerances.
 """
 
 __all__ = [
@@ -21,5 +21,6 @@ __all__ = [
     "search",
     "service",
     "settings",
+    "tolerances",
     "windings",
 ]

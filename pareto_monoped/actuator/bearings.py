@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.errors import InputError, complaint
+from pareto_monoped.geometry.making import Length, limits
 from pareto_monoped.geometry.shapes import Floats, Numbers
 
 
@@ -190,7 +191,49 @@ def main_bearing(bore_mm: Numbers, model: Literal["catalogue", "regression"] = "
     return Bearing(inner_diameter_mm=inner, outer_diameter_mm=outer, width_mm=width, mass_kg=mass)
 
 
+_WIDTH_BORES_MM = np.array([50.0, 80.0, 120.0, 180.0])
+_WIDTH_LESS_MM = np.array([0.12, 0.15, 0.2, 0.25])
+"""By how much a ring may be narrower, up to these bores (ISO 492, normal class)."""
+_CLEARANCE_BORES_MM = np.array([10.0, 18.0, 24.0, 30.0, 40.0, 50.0, 65.0, 80.0, 100.0, 120.0, 140.0, 160.0])
+_CLEARANCE_UM = np.array(
+    [
+        *((8, 23), (11, 25), (13, 28), (13, 28), (15, 33), (18, 36)),
+        *((23, 43), (25, 51), (30, 58), (36, 66), (41, 81), (46, 91)),
+    ]
+)
+"""Radial internal clearance of deep groove ball bearings of group C3, up to these bores (ISO 5753-1)."""
+CLEARANCE_GROUP = "C3"
+"""Of all ball bearings of the robot: in group N, the tightest fits could take more clearance than there is."""
+_GROOVE = 0.04
+"""Radii of both grooves, 0.52 ball diameters each, less the diameter, over the diameter; as for the ratings above."""
+
+
+def width_less_mm(bore_mm: Numbers) -> Numbers:
+    """Return by how much a ball bearing may be narrower than its nominal width (ISO 492, normal class)."""
+    less: Numbers = _WIDTH_LESS_MM[np.minimum(np.searchsorted(_WIDTH_BORES_MM, bore_mm), len(_WIDTH_LESS_MM) - 1)]
+    return less
+
+
+def clearance_mm(bore_mm: float) -> tuple[float, float]:
+    """Return the least and greatest radial internal clearance of group C3, unmounted (ISO 5753-1)."""
+    low, high = _CLEARANCE_UM[min(int(np.searchsorted(_CLEARANCE_BORES_MM, bore_mm)), len(_CLEARANCE_UM) - 1)]
+    return 1e-3 * float(low), 1e-3 * float(high)
+
+
+def axial_play_mm(bearing: RatedBearing) -> float:
+    """Return how far one ring moves along the axis between both sides, unmounted, at the greatest clearance.
+
+    With the distance A of the grooves' centres, the balls touch both rings at an angle a with cos(a) = 1 - G_r / (2 A),
+    and the play is 2 A sin(a) (Harris, Rolling Bearing Analysis, ch. 2).
+    """
+    centres = _GROOVE * bearing.ball_diameter_mm
+    cosine = 1.0 - clearance_mm(bearing.inner_diameter_mm)[1] / (2.0 * centres)
+    return float(2.0 * centres * np.sqrt(1.0 - cosine**2))
+
+
 Standard = Literal["DIN 471", "DIN 472"]
+_LEAST_COLLAR_MM = 0.75
+"""Thinner collars give way to the tool; our own choice."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -220,6 +263,15 @@ class RetainingRing:
     def play_mm(self) -> Numbers:
         """How much wider the groove is than the ring."""
         return self.groove_width_mm - self.thickness_mm
+
+    @property
+    def collar_mm(self) -> Numbers:
+        """Thickness of what is left beside the groove, on the side to which the ring is pushed.
+
+        DIN 471 and 472 ask for three depths of the groove, with which it carries the ring's full load, some 20 kN here.
+        What it has to carry, the strength factors show; half a depth can be turned.
+        """
+        return np.maximum(_LEAST_COLLAR_MM, 0.25 * np.abs(self.size_mm - self.groove_diameter_mm))[()]
 
     @property
     def name(self) -> str:
@@ -280,3 +332,26 @@ def retaining_ring(standard: Standard, size_mm: Numbers) -> RetainingRing:
     row = np.where((np.abs(table[place, 0] - size_mm) < 1e-6)[..., None], table[place], np.nan)
     values = dict(zip(_NUMBERS, (row[..., column][()] for column in range(len(_NUMBERS))), strict=True))
     return RetainingRing(standard=standard, groove_zone="" if np.ndim(place) else zones[int(place)], **values)
+
+
+def bearing_width(bearing: Bearing, z_front_mm: Numbers) -> Length:
+    """Return the width of a ball bearing with its limits."""
+    less_mm = width_less_mm(bearing.inner_diameter_mm)
+    return Length(name="width", z0_mm=z_front_mm - bearing.width_mm, z1_mm=z_front_mm, lower_mm=-less_mm, upper_mm=0.0)
+
+
+def ring_lengths(ring: RetainingRing, z0_mm: Numbers) -> tuple[Length, ...]:
+    """Return the thickness of a retaining ring with its limits (h11, DIN 471 and DIN 472)."""
+    less_mm = np.where(ring.thickness_mm <= 1.75, 0.06, np.where(ring.thickness_mm <= 2.5, 0.07, 0.08))[()]
+    return (Length(name="thickness", z0_mm=z0_mm, z1_mm=z0_mm + ring.thickness_mm, lower_mm=-less_mm, upper_mm=0.0),)
+
+
+def groove(z0_mm: Numbers, ring: RetainingRing) -> Length:
+    """Return the width of a retaining ring's groove with its limits (H13)."""
+    return Length(
+        name="groove",
+        z0_mm=z0_mm,
+        z1_mm=z0_mm + ring.groove_width_mm,
+        lower_mm=0.0,
+        upper_mm=limits(2.0, "H13").upper_mm,  # all are 1 to 3 mm wide
+    )

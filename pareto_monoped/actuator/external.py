@@ -5,11 +5,13 @@ import numpy as np
 from pareto_monoped.actuator.external_housing import BACK_BORE_MM, housing_parts
 from pareto_monoped.actuator.features import (
     MOTOR_TAPPED_HOLE_MM,
+    centre_hole,
     coupling_dowels,
     coupling_part,
     encoder_parts,
     motor_holes,
     rotor_part,
+    seat_between,
     shaft_end,
     slab,
     stator_part,
@@ -18,7 +20,7 @@ from pareto_monoped.actuator.features import (
 )
 from pareto_monoped.actuator.front import carrier_parts, gear_parts
 from pareto_monoped.actuator.layout import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, ExternalLayout, Layout, external_layout
-from pareto_monoped.actuator.motor import HolePattern, Motor
+from pareto_monoped.actuator.motor import HolePattern, Motor, envelope_length
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role
@@ -71,7 +73,7 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
     r_coupling = 0.5 * output.pitch_circle_mm + max(
         0.5 * output.diameter_mm + data.coupling.rim_mm - _RIM_LESS_MM, screw.countersunk + _HEAD_RIM_MM
     )
-    windows = _coupling_windows(float(spline.tip_radius_mm), output)
+    rear, windows = centre_hole(shell.z_motor, 1.0), _coupling_windows(float(spline.tip_radius_mm), output)
     return (
         sun_part(
             at,
@@ -80,9 +82,12 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
             spline,
             data.spline.sun_shaft_radius_mm,
             behind=(
-                *slab(shell.z_coupling, at.z_gear_back, data.spline.sun_shaft_radius_mm),
-                *slab(shell.z_motor, shell.z_coupling, spline),
+                *seat_between(shell.z_coupling, at.z_gear_back, data.spline.sun_shaft_radius_mm),
+                *slab(rear.high_mm, shell.z_coupling, spline),
+                *slab(shell.z_motor, rear.high_mm, spline, *rear.shapes),
             ),
+            seat_mm=data.spline.sun_shaft_radius_mm,
+            rear=rear,
         ),
         coupling_part(
             slab(shell.z_motor, shell.z_coupling, r_coupling, spline, through, dowels, *windows),
@@ -164,6 +169,7 @@ def _motor_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Actu
                 *tube(z_plate + base, z_motor - base - clearance, at.r_stator_out, at.r_stator_in),
             ),
             catalogue_mass_kg=(1.0 - rotor_share) * frame.mass_kg,
+            catalogue_price_eur=motor.price_share_eur(1.0 - rotor_share),
             note=f"{motor.name}, framed: stator, base and bearings",
         ),
         rotor_part(
@@ -180,6 +186,8 @@ def _motor_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Actu
                 *shaft_end(z_plate, z_motor - base, _SHAFT_MM),
             ),
             catalogue_mass_kg=rotor_share * frame.mass_kg,
+            lengths=(envelope_length(z_plate, z_motor),),
+            catalogue_price_eur=motor.price_share_eur(rotor_share),
             note=f"{motor.name}, framed: rotor with its face",
             joint=Joint(kind=JointKind.RUNNING, how="in the motor's own bearings on", partner="motor_stator"),
         ),

@@ -1,5 +1,6 @@
 """The housing of the ESSPG: ring housing in front, casing around the motor, backplate, and what holds them together."""
 
+from pareto_monoped.actuator.bearings import groove, ring_lengths
 from pareto_monoped.actuator.features import (
     MOTOR_CLEARANCE_HOLE_MM,
     SPIGOT_MM,
@@ -9,6 +10,7 @@ from pareto_monoped.actuator.features import (
     housing_part,
     housing_screw,
     motor_holes,
+    skirt,
     slab,
     spigot,
     tube,
@@ -18,7 +20,7 @@ from pareto_monoped.actuator.layout import ExternalLayout, Layout
 from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.features import bored, turned
-from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.making import FINE_MM, Fit, Length, narrower, wider
 from pareto_monoped.geometry.parts import Part, steel_part
 from pareto_monoped.geometry.roles import Group, Role, Visibility
 from pareto_monoped.geometry.screws import M3, tapped
@@ -43,12 +45,14 @@ def _flange_holes(shell: ExternalLayout, settings: ActuatorSettings, radius_mm: 
 
 
 def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    """Build the ring housing, which carries main bearing and ring, and the retaining ring behind the bearing."""
+    """Build the ring housing, which carries main bearing and ring, and the retaining ring behind the bearing.
+
+    A boss around the bearing ties the mounting face to the tube around the ring: one wall, turned from outside, where a
+    tube around the boss would leave a slot too deep to cut.
+    """
     casing, materials = settings.parts.casing, settings.materials
-    z_seat_back, z_groove_back, z_flange = shell.z_seat_back, shell.z_groove_back, shell.z_flange
-    ring = at.bore_ring
-    # The bearing presses the ring backwards; the groove's play is on its other side, under the bearing.
-    z_groove = z_groove_back + ring.groove_width_mm
+    z_seat_back, z_groove_back, z_groove = shell.z_seat_back, shell.z_groove_back, shell.z_groove
+    z_flange, ring = shell.z_flange, at.bore_ring
     mount, screws = casing_holes(at, settings), _flange_holes(shell, settings, M3.hole)
     dowels = casing_dowel_holes(at, settings)
     return (
@@ -62,16 +66,23 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
                 *tube(z_groove, at.z_bearing_front, shell.r_boss, at.r_seat),
                 *tube(z_groove_back, z_groove, shell.r_boss, ring.r_groove),
                 *tube(z_seat_back, z_groove_back, shell.r_boss, at.r_seat),
-                *tube(z_seat_back, -casing.plate_mm, shell.r_tube, shell.r_tube_in),
+                *tube(z_seat_back, shell.z_step, shell.r_tube, shell.r_boss),
                 *tube(at.z_gear_front, z_seat_back, shell.r_tube, at.r_ring - casing.ring_lip_mm),
                 *tube(z_flange, at.z_gear_front, shell.r_tube, at.r_ring),
                 *tube(z_flange, z_flange + casing.flange_mm, shell.r_flange, shell.r_tube, screws),
             ),
             fits=(
-                Fit(diameter_mm=2.0 * at.r_seat, zone="J7", seat=True),
+                Fit(diameter_mm=2.0 * at.r_seat, zone="H7", seat=True),
                 Fit(diameter_mm=2.0 * at.r_ring, zone="H7", seat=True),
                 Fit(diameter_mm=settings.parts.interface.mount_dowel_mm, zone="H7"),
                 Fit(diameter_mm=ring.groove_diameter_mm, zone=ring.groove_zone),
+            ),
+            lengths=(
+                wider("seat", z_groove_back, at.z_bearing_front),
+                groove(z_groove_back, ring),
+                narrower("wall", z_seat_back, at.z_bearing_front),
+                wider("ring seat", z_flange, at.z_gear_front),
+                narrower("length", z_flange, at.z_bearing_front),
             ),
             features=(
                 tapped(M3, (mount,), -casing.rim_mm, 0.0, enters="high"),
@@ -85,6 +96,7 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
             visibility=Visibility.INSIDE,
             material=materials.steel,
             prisms=tube(z_groove_back, at.z_bearing_back, ring.r_groove, ring.r_free),
+            lengths=ring_lengths(ring, z_groove_back),
             group=Group.HOUSING,
             catalogue_mass_kg=ring.mass_kg,
             note=ring.name and f"{ring.name}, in the ring housing's groove behind the main bearing",
@@ -110,7 +122,7 @@ def _casing_and_backplate(
             prisms=(
                 *tube(at.z_gear_back, z_flange, shell.r_web, at.r_ring, threads),
                 *tube(shell.z_web, at.z_gear_back, shell.r_web, at.r_ring - casing.ring_lip_mm, threads),
-                *tube(z_plate + casing.flange_mm, shell.z_web, at.r_casing + casing.wall_mm, at.r_casing),
+                *skirt(z_plate + casing.flange_mm, shell.z_web, at, settings, shell.r_bolts),
                 *tube(z_plate, z_plate + casing.flange_mm, at.r_plate, at.r_casing, mount),
             ),
             features=(
@@ -118,6 +130,10 @@ def _casing_and_backplate(
                 tapped(M3, (mount,), z_plate, z_plate + casing.flange_mm, enters="low"),
                 bored(Circle(radius_mm=at.r_ring), at.z_gear_back, z_flange, enters="high"),
                 bored(Circle(radius_mm=at.r_casing), z_plate, shell.z_web, enters="low"),
+            ),
+            lengths=(
+                wider("ring seat", at.z_gear_back, z_flange),
+                Length(name="length", z0_mm=z_plate, z1_mm=z_flange, lower_mm=0.0, upper_mm=2.0 * FINE_MM),
             ),
             note="bore and faces in one clamping",
         ),

@@ -11,15 +11,23 @@ from typing import Any
 
 import numpy as np
 
-from pareto_monoped.actuator.bearings import Bearing
-from pareto_monoped.actuator.layout import COUPLING_DOWEL, Layout, SunNeck, hub_note, spline_note
+from pareto_monoped.actuator.bearings import CLEARANCE_GROUP, Bearing, bearing_width
+from pareto_monoped.actuator.layout import (
+    COUPLING_DOWEL,
+    NECK_NOTE,
+    THIN_WALL_MM,
+    Layout,
+    SunNeck,
+    hub_note,
+    spline_note,
+)
 from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.rating.load import runout_um
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
-from pareto_monoped.geometry.features import Hole
+from pareto_monoped.geometry.features import CENTRE_MM, Hole, Mouth, tap_run_out_mm
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
-from pareto_monoped.geometry.making import Fit, ToothMaking
+from pareto_monoped.geometry.making import RELIEF_MM, Fit, ToothMaking, wider
 from pareto_monoped.geometry.parts import Part, Prism, steel_part, strong_part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, screw_part
@@ -32,6 +40,8 @@ END_PLAY_MM = 0.5
 """From the end of the sun's shaft to the output face; our own choice."""
 MOTOR_CLEARANCE_HOLE_MM = 0.5
 """Clearance hole less screw diameter for the motor's mounting pattern (ISO 273, medium, M4 and M5)."""
+_BESIDE_MM = 0.05
+"""From the casing's thinner wall to the tapped holes above it; our own choice."""
 MOTOR_TAPPED_HOLE_MM = -0.8
 """Tapping hole less thread diameter for the motor's mounting pattern (ISO 2306: 4.2 mm for M5)."""
 
@@ -58,22 +68,32 @@ def sun_part(
     shaft_mm: float,
     *,
     behind: tuple[Prism, ...],
-    seats_mm: tuple[float, ...] = (),
+    seat_mm: float,
+    rear: Hole,
 ) -> Part:
-    """Build the sun in one piece with its splined shaft, whose prisms ``behind`` the teeth depend on the family."""
+    """Build the sun in one piece with its splined shaft, whose prisms ``behind`` the teeth depend on the family.
+
+    It is ground between centres, of which ``rear`` is one, on its journal and on a seat behind.
+    """
     teeth, steel = at.gears.sun(), settings.gear_steels.sun
+    relief, depth = RELIEF_MM
+    front = centre_hole(-END_PLAY_MM, -1.0)
     return gear_part(settings, steel)(
         name="sun",
         prisms=(
-            *slab(neck.z, -END_PLAY_MM, neck.r_journal),
+            *slab(front.low_mm, -END_PLAY_MM, neck.r_journal, *front.shapes),
+            *slab(neck.z + relief, front.low_mm, neck.r_journal),
+            *slab(neck.z, neck.z + relief, neck.r_journal - depth),
             *slab(at.z_gear_front, neck.z, neck.r),
             *slab(at.z_gear_back, at.z_gear_front, teeth),
             *behind,
         ),
         group=Group.ROTOR,
         teeth=made(rated_teeth(at.gears.sun(), steel, settings, at.gears.planet()), spline_teeth(spline, settings)),
-        fits=tuple(Fit(diameter_mm=2.0 * radius, zone="h6", seat=True) for radius in (neck.r_journal, *seats_mm)),
-        note=f"one piece with its shaft, {spline_note(spline, shaft_mm)}; " + gear_note(teeth, settings),
+        fits=tuple(Fit(diameter_mm=2.0 * radius, zone="h6", seat=True) for radius in (neck.r_journal, seat_mm)),
+        features=(front, rear),
+        note=f"one piece with its shaft, {spline_note(spline, shaft_mm)}; ground between centres, reliefs E 0.2 x 0.1 "
+        f"(DIN 509); {NECK_NOTE}; {gear_note(teeth, settings)}",
         joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling"),
     )
 
@@ -91,6 +111,7 @@ def coupling_part(
         group=Group.ROTOR,
         teeth=(spline_teeth(spline, settings),),
         fits=(COUPLING_DOWEL.hole_fit,),
+        lengths=(wider("height", prisms[-1].z0_mm, prisms[0].z1_mm),),
         features=(screws,),
         note=f"screwed to the {screwed_to}; bore {hub_note(settings)}",
     )
@@ -131,12 +152,15 @@ def note_with(text: str, *numbers: Numbers) -> str:
     return text.format(*(f"{float(number):g}" for number in numbers))
 
 
+_NUMBER = (float, int, np.ndarray)
+
+
 def slab(z0_mm: Numbers, z1_mm: Numbers, outline: Numbers | Shape, *holes: Numbers | Shape) -> tuple[Prism, ...]:
     """Build one prism from radii or shapes; none if a single slab has no height, which arrays keep."""
     if _is_single(z0_mm) and _is_single(z1_mm) and float(z1_mm) - float(z0_mm) < 1e-9:
         return ()
-    shapes = tuple(Circle(radius_mm=hole) if isinstance(hole, float | int | np.ndarray) else hole for hole in holes)
-    disc = Circle(radius_mm=outline) if isinstance(outline, float | int | np.ndarray) else outline
+    shapes = tuple(Circle(radius_mm=hole) if isinstance(hole, _NUMBER) else hole for hole in holes)
+    disc = Circle(radius_mm=outline) if isinstance(outline, _NUMBER) else outline
     return (Prism(outline=disc, z0_mm=z0_mm, z1_mm=z1_mm, holes=shapes),)
 
 
@@ -205,6 +229,26 @@ stator_part = partial(
 rotor_part = partial(Part, name="motor_rotor", role=Role.MOTOR_ROTOR, process="bought", group=Group.ROTOR)
 
 
+def skirt(
+    low_mm: Numbers, high_mm: Numbers, at: Layout, settings: ActuatorSettings, threads_mm: Numbers
+) -> tuple[Prism, ...]:
+    """Build the casing's wall from its flange up to threads on a circle of radius ``threads_mm``.
+
+    Threads at either end stand half above the wall. There it is turned thinner, so that their taps run out.
+    """
+    wall, run_out = at.r_casing + settings.parts.casing.wall_mm, tap_run_out_mm(M3.thread.pitch_mm)
+
+    def beside(radius_mm: Numbers) -> Numbers:
+        thin = np.clip(radius_mm - M3.core - _BESIDE_MM, at.r_casing + THIN_WALL_MM, wall)
+        return np.where(radius_mm > at.r_casing, thin, wall)[()]
+
+    return (
+        *tube(low_mm, low_mm + run_out, beside(at.r_bolts), at.r_casing),
+        *tube(low_mm + run_out, high_mm - run_out, wall, at.r_casing),
+        *tube(high_mm - run_out, high_mm, beside(threads_mm), at.r_casing),
+    )
+
+
 def motor_holes(motor: Motor, play_mm: float) -> Pattern:
     """Return the motor's mounting pattern; ``play_mm`` is hole less screw diameter."""
     holes = motor.mount_holes
@@ -246,10 +290,14 @@ def bought_bearing(
         visibility=Visibility.INSIDE,
         material=material,
         prisms=tube(z_front_mm - bearing.width_mm, z_front_mm, outer, inner),
+        lengths=(bearing_width(bearing, z_front_mm),),
         group=group,
         catalogue_mass_kg=bearing.mass_kg,
         note=note_with(
-            "{} x {} x {} mm (ISO 15), " + note, bearing.inner_diameter_mm, bearing.outer_diameter_mm, bearing.width_mm
+            "{} x {} x {} mm (ISO 15) " + CLEARANCE_GROUP + ", " + note,
+            bearing.inner_diameter_mm,
+            bearing.outer_diameter_mm,
+            bearing.width_mm,
         ),
         joint=joint,
     )
@@ -262,6 +310,8 @@ MAGNET_RADIUS_MM, MAGNET_MM = 2.0, 4.0
 _GAP_MM = 1.0
 _BODY_KG = 0.002
 """Body and 0.3 m of its cable; our own estimate, the data sheet gives none."""
+_CENTRE_EDGE_MM = 0.5
+"""Width of the centre around the magnet's bore; our own choice."""
 _CAP_MM = 1.5
 """Thickness of the cap: 0.5 mm from the inner ring of an ISSPG's rear bearing; our own choice."""
 
@@ -308,6 +358,40 @@ def shaft_end(z0_mm: Numbers, z1_mm: Numbers, radius_mm: Numbers) -> tuple[Prism
     """Build a shaft whose lower end at ``z0_mm`` has a bore for the magnet."""
     split = np.minimum(z0_mm + MAGNET_MM, z1_mm)[()]
     return (*tube(z0_mm, split, radius_mm, MAGNET_RADIUS_MM), *slab(split, z1_mm, radius_mm))
+
+
+def centre_hole(face_mm: Numbers, inwards: float) -> Hole:
+    """Return the centre hole in a shaft's end (DIN 332-1, A 1 x 2.12); ``inwards`` is 1 above the face."""
+    radius, edge, depth = CENTRE_MM
+    end, mouth = face_mm + inwards * depth, Mouth.of_centre(edge, radius)
+    return Hole(
+        shapes=(Circle(radius_mm=radius),),
+        low_mm=np.minimum(face_mm, end)[()],
+        high_mm=np.maximum(face_mm, end)[()],
+        low=mouth if inwards > 0.0 else None,
+        high=mouth if inwards < 0.0 else None,
+    )
+
+
+def magnet_centre(z_end_mm: Numbers) -> Hole:
+    """Return the bore of the magnet in a shaft's lower end, whose mouth is a centre."""
+    edge = MAGNET_RADIUS_MM + _CENTRE_EDGE_MM
+    return Hole(
+        shapes=(Circle(radius_mm=MAGNET_RADIUS_MM),),
+        low_mm=z_end_mm,
+        high_mm=z_end_mm + MAGNET_MM,
+        low=Mouth.of_centre(edge, MAGNET_RADIUS_MM),
+    )
+
+
+def seat_between(low_mm: Numbers, high_mm: Numbers, radius_mm: float) -> tuple[Prism, ...]:
+    """Build a ground seat between two shoulders, with a relief beside each."""
+    relief, depth = RELIEF_MM
+    return (
+        *slab(low_mm, low_mm + relief, radius_mm - depth),
+        *slab(low_mm + relief, high_mm - relief, radius_mm),
+        *slab(high_mm - relief, high_mm, radius_mm - depth),
+    )
 
 
 SPLINE_CLASS = 8

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from pareto_monoped.actuator.bearings import groove, ring_lengths
 from pareto_monoped.actuator.features import (
     bought_bearing,
     gear_note,
@@ -17,9 +18,9 @@ from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.planet_bearings import planet_bearing_parts
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.webs import SCREW as WEB_SCREW
-from pareto_monoped.geometry.features import bored, turned
+from pareto_monoped.geometry.features import POINT_SHARE, bored, tap_run_out_mm, turned
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, ExternalGear
-from pareto_monoped.geometry.making import Fit, limits, raceway_note
+from pareto_monoped.geometry.making import FINE_MM, Fit, Length, limits, narrower, raceway_note, wider
 from pareto_monoped.geometry.parts import Part, Prism, steel_part, strong_part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, clearance, screw_part, tapped
@@ -39,6 +40,10 @@ _RACEWAY_CASE = 0.1
 housings)."""
 _RIM_TOOTH_DEPTHS = 1.2
 """Least rim under the planet's roots, in tooth depths (AGMA 2001-D04, rim thickness factor 1)."""
+_FLOOR_MM = 0.5
+"""Least metal between the drill's point under an output thread and a pin's hole; our own choice."""
+_RECESS_DEPTHS = 5.0
+"""Greatest depth of a planet's recess over its width: tools for face grooves reach 4 to 6 widths."""
 _PIN_TO_GROOVE_MM = 0.1
 """Least axial distance of the pins' ends from the retaining ring's groove, of wide grooves; our own choice."""
 
@@ -56,7 +61,7 @@ def planet_prisms(at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
     if np.ndim(recessed) == 0 and not recessed:
         return slab(low, high, shape, bore)
     rim = np.where(recessed, rim, hub)[()]
-    depth = 0.5 * (1.0 - data.planet_web_share) * at.face_width_mm
+    depth = np.minimum(0.5 * (1.0 - data.planet_web_share) * at.face_width_mm, _RECESS_DEPTHS * (rim - hub))
     if settings.rules != "paper":  # whose face widths are not rounded either
         step = settings.parts.rating.face_step_mm
         depth = np.round(depth / step) * step
@@ -94,6 +99,7 @@ def _planet(at: Layout, settings: ActuatorSettings) -> Part:
         ),
         note=_planet_note(gears.planet(), settings),
         fits=planet_fits(settings),
+        lengths=(narrower("face", at.z_gear_back, at.z_gear_front),),
         joint=Joint(kind=JointKind.PRESSED, how="pressed onto", partner="planet_bush") if bushes else None,
         count=gears.planets,
         pitch_radius_mm=at.r_pins,
@@ -119,6 +125,7 @@ def _pins(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             group=Group.OUTPUT,
             grade=ALLOYS["raceway_pin" if needles else "dowel"],
             fits=(Fit(diameter_mm=carrier.pin_diameter_mm, zone=_PIN_ZONE, raceway=needles),),
+            lengths=(_pin_length(pin_low, pin_front, settings),),
             features=(
                 tapped(M3, (Circle(radius_mm=M3.core),), pin_low, pin_tap, enters="low", usable_mm=_PIN_THREAD_MM),
                 turned(pin, pin_low, 1.0, pressed=True),
@@ -153,10 +160,23 @@ def _ring(at: Layout, settings: ActuatorSettings) -> Part:
         prisms=slab(at.z_gear_back, at.z_gear_front, at.r_ring, teeth),
         group=Group.HOUSING,
         fits=(Fit(diameter_mm=2.0 * at.r_ring, zone="h6", seat=True),),
+        lengths=(narrower("face", at.z_gear_back, at.z_gear_front),),
         teeth=made(rated_teeth(gears.ring(), steel, settings, gears.planet())),
         note=gear_note(teeth, settings),
         joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="ring_housing"),
     )
+
+
+def _pin_length(low_mm: Numbers, high_mm: Numbers, settings: ActuatorSettings) -> Length:
+    """Return the pins' length with its limits: with webs they must not keep the carriers apart, else they do so."""
+    off_mm = (-2.0 * FINE_MM, 0.0) if settings.second_carrier == "webs" else (0.0, FINE_MM)
+    return Length(name="length", z0_mm=low_mm, z1_mm=high_mm, lower_mm=off_mm[0], upper_mm=off_mm[1])
+
+
+def _pin_hole(low_mm: Numbers, high_mm: Numbers, settings: ActuatorSettings) -> Length:
+    """Return the depth of the pins' holes with its limits, as for their length."""
+    made = wider if settings.second_carrier == "webs" else narrower
+    return made("pin hole", low_mm, high_mm)
 
 
 def planet_fits(settings: ActuatorSettings) -> tuple[Fit, ...]:
@@ -184,9 +204,23 @@ def _raceway(diameter_mm: float, zone: str) -> str:
 
 
 def z_pin_front(at: Layout, settings: ActuatorSettings) -> Numbers:
-    """Return the height of the pins' front ends: behind the carrier's diaphragm and the retaining ring's groove."""
-    carrier = settings.parts.carrier
-    return np.minimum(-(carrier.thread_depth_mm + carrier.diaphragm_mm), _z_groove(at) - _PIN_TO_GROOVE_MM)
+    """Return the height of the pins' front ends: behind the output's threads and the retaining ring's groove."""
+    return output_bottoms(at, settings)[1]
+
+
+def output_bottoms(at: Layout, settings: ActuatorSettings) -> tuple[Numbers, Numbers]:
+    """Return how deep the output's tapped holes are, and the face behind them from which the pins stand.
+
+    They go through where the carrier is hollow behind. Elsewhere they are deeper than their threads for the tap's lead,
+    with a floor below the drill's point.
+    """
+    carrier, floor = settings.parts.carrier, _FLOOR_MM + POINT_SHARE * 2.0 * M3.core
+    hollow = at.r_carrier_in >= 0.5 * settings.parts.interface.output_bolt_circle_mm + M3.core
+    blind = -(carrier.thread_depth_mm + tap_run_out_mm(M3.thread.pitch_mm))
+    shallow = np.minimum(-at.end_bearing.width_mm - carrier.diaphragm_mm, _z_groove(at) - _PIN_TO_GROOVE_MM)
+    shallow = np.minimum(shallow, -carrier.thread_depth_mm)
+    face = np.where(hollow, shallow, np.minimum(shallow, blind - floor))[()]
+    return np.where(hollow, face, blind)[()], face
 
 
 def _z_groove(at: Layout) -> Numbers:
@@ -199,18 +233,21 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
     data, materials = settings.parts, settings.materials
     carrier = data.carrier
     threads, dowels = output_holes(settings), output_dowel_holes(settings)
-    z_diaphragm = -carrier.thread_depth_mm
-    z_pins, z_groove = z_pin_front(at, settings), _z_groove(at)
+    z_diaphragm, z_groove = -at.end_bearing.width_mm, _z_groove(at)
+    z_tap, z_pins = output_bottoms(at, settings)
     pins = Pattern(radius_mm=0.5 * carrier.pin_diameter_mm, pitch_radius_mm=at.r_pins, count=at.gears.planets)
-    seat = 0.5 * at.end_bearing.outer_diameter_mm
-    ring = at.shaft_ring
+    seat, ring = 0.5 * at.end_bearing.outer_diameter_mm, at.shaft_ring
+    bore = seat - data.casing.lip_mm
     z_ring = at.z_bearing_front + ring.thickness_mm
     body: tuple[Prism, ...] = (
         *slab(-carrier.flange_thickness_mm, 0.0, carrier.flange_radius_mm, seat, threads, dowels),
         *slab(z_ring, -carrier.flange_thickness_mm, at.r_bore, seat, threads, dowels),
         *slab(z_diaphragm, z_ring, ring.r_groove, seat, threads, dowels),
-        *slab(z_groove, z_diaphragm, ring.r_groove, seat - data.casing.lip_mm),
-        *slab(z_pins, z_groove, at.r_bore, seat - data.casing.lip_mm),
+        # Wide grooves end behind the threads, narrow ones before them.
+        *slab(np.maximum(z_groove, z_tap), z_diaphragm, ring.r_groove, bore, threads),
+        *slab(z_tap, np.maximum(z_groove, z_tap), at.r_bore, bore, threads),
+        *slab(z_groove, np.maximum(z_groove, z_tap), ring.r_groove, bore),
+        *slab(z_pins, np.minimum(z_groove, z_tap), at.r_bore, bore),
         *slab(at.z_bearing_back, z_pins, at.r_bore, at.r_carrier_in, pins),
         *slab(at.z_shoulder, at.z_bearing_back, at.r_bore + carrier.shoulder_height_mm, at.r_carrier_in, pins),
     )
@@ -227,14 +264,21 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             group=Group.OUTPUT,
             fits=(
                 Fit(diameter_mm=2.0 * at.r_bore, zone="h6", seat=True),
-                Fit(diameter_mm=2.0 * seat, zone="J7", seat=True),
+                Fit(diameter_mm=2.0 * seat, zone="H7", seat=True),
                 Fit(diameter_mm=carrier.pin_diameter_mm, zone="H7"),
                 Fit(diameter_mm=data.interface.output_dowel_mm, zone="H7"),
                 Fit(diameter_mm=ring.groove_diameter_mm, zone=ring.groove_zone),
             ),
+            lengths=(
+                wider("inner seat", at.z_bearing_back, z_ring),
+                groove(z_groove, ring),
+                wider("shoulder", at.z_shoulder, at.z_bearing_back),
+                _pin_hole(at.z_shoulder, z_pins, settings),
+                *((wider("web", at.z_secondary_front, at.z_shoulder),) if web_holes else ()),
+            ),
             note=ring.groove_note,
             features=(
-                tapped(M3, (threads,), z_diaphragm, 0.0, enters="high"),
+                tapped(M3, (threads,), z_tap, 0.0, enters="high", usable_mm=carrier.thread_depth_mm),
                 bored(Circle(radius_mm=seat), z_diaphragm, 0.0, enters="high"),
                 bored(pins, at.z_shoulder, z_pins, enters="low", pressed=True),
                 turned(at.r_bore, -carrier.flange_thickness_mm, -1.0),
@@ -251,6 +295,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             visibility=Visibility.INSIDE,
             material=materials.steel,
             prisms=tube(at.z_bearing_front, z_ring, ring.r_free, ring.r_groove),
+            lengths=ring_lengths(ring, at.z_bearing_front),
             group=Group.OUTPUT,
             catalogue_mass_kg=ring.mass_kg,
             note=ring.name and f"{ring.name}, in the carrier's groove before the main bearing",
@@ -265,6 +310,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             0.0,
             Group.OUTPUT,
             "carries the sun's end in the carrier",
+            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="carrier"),
         ),
         *_web_screws(at, settings),
     )
@@ -287,6 +333,10 @@ def _secondary_carrier(at: Layout, settings: ActuatorSettings, pins: Pattern) ->
         ),
         group=Group.OUTPUT,
         fits=(Fit(diameter_mm=carrier.pin_diameter_mm, zone="H7"),),
+        lengths=(
+            _pin_hole(z_split, at.z_secondary_front, settings),
+            narrower("thickness", at.z_secondary_back, at.z_secondary_front),
+        ),
         features=(
             clearance(M3, (screws,), at.z_secondary_back, z_split, countersunk="low"),
             bored(pins, z_split, at.z_secondary_front, enters="high", pressed=True),

@@ -36,9 +36,11 @@ _COUNTS, _SHIFTS = ("sun_teeth", "planet_teeth", "ring_teeth", "module_mm", "pla
 _UNSHIFTED = _Shifts(PRESSURE_ANGLE_RAD, PRESSURE_ANGLE_RAD, 0.0, 0.0)
 FORM_MARGIN_MODULES = 0.02
 """From where a flank begins, or ends in a ring, to where its mate's tip reaches, along the radius: our own choice."""
-CENTRE_TOLERANCE_MM = 0.022
-"""By how much a planet's axis may be off its place along the radius: 0.010 by the zone of the pins' holes, Ø0.02, and
-0.012 by half the greatest play of needles between F7 and m6."""
+PIN_PLACE_MM = 0.01
+"""By how much a pin may be off its place: the zone of the pins' holes on the drawing is Ø0.02."""
+CENTRE_TOLERANCE_MM = PIN_PLACE_MM + 0.012
+"""By how much a planet's axis may be off its place along the radius, with half the greatest play of needles between F7
+and m6."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -14,10 +14,12 @@ from pareto_monoped.actuator.features import (
     encoder_parts,
     housing_part,
     housing_screw,
+    magnet_centre,
     motor_holes,
     note_with,
     rotor_part,
     shaft_end,
+    skirt,
     slab,
     spigot,
     stator_part,
@@ -34,11 +36,11 @@ from pareto_monoped.actuator.layout import (
     frameless,
     internal_layout,
 )
-from pareto_monoped.actuator.motor import Motor
+from pareto_monoped.actuator.motor import Motor, envelope_length
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.features import bored, turned
-from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.making import FINE_MM, RELIEF_MM, Fit, Length, narrower, wider
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind
 from pareto_monoped.geometry.screws import M3, clearance, screw_for, screw_part, tapped
@@ -52,6 +54,8 @@ _HUB_WALL_MM = 1.2
 """Of the coupling's hub, which touches the inner ring of the rear bearing only (6800: abutment 12 mm)."""
 _PAD_RIM_MM = 0.5
 """Metal inside and outside the threads in the backplate's pad; our own choice."""
+_LEAST_GAP_MM = 2.0
+"""Between pad and seat, which are one where it would be narrower: an end mill's diameter; our own choice."""
 _BELL_PLAY_MM = 0.5
 """From the spline of the sun's shaft, which is put through the bell, to the bell's bore; our own choice."""
 
@@ -79,7 +83,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             shell.z_seat,
             Group.HOUSING,
             "carries the rotor",
-            joint=Joint(kind=JointKind.PRESSED, how="pressed into", partner="backplate"),
+            joint=Joint(kind=JointKind.BONDED, how="bonded onto the sun and into", partner="backplate"),
         ),
         *_motor_parts(at, shell, motor, settings),
         *encoder_parts(shell.z_plate, shell.z_end, shell.r_rear_seat - settings.parts.casing.lip_mm, "sun"),
@@ -89,7 +93,7 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
 def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings) -> tuple[Part, ...]:
     """Build what turns with the motor: the sun in one piece with its splined shaft, and the coupling to the bell."""
     coupling, spline = settings.parts.coupling, settings.parts.spline.internal
-    shaft = coupling.shaft_radius_mm
+    shaft, (relief, depth) = coupling.shaft_radius_mm, RELIEF_MM
     z_hub, threads, dowels = (
         shell.z_coupling - coupling.thickness_mm,
         _bell_holes(settings, M3.core),
@@ -103,11 +107,13 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
             spline,
             shaft,
             behind=(
-                *slab(shell.z_coupling, at.z_gear_back, shaft),
+                *slab(shell.z_coupling, at.z_gear_back, shaft - depth),
                 *slab(z_hub, shell.z_coupling, spline),
-                *shaft_end(shell.z_plate, z_hub, shaft),
+                *slab(z_hub - relief, z_hub, shaft - depth),
+                *shaft_end(shell.z_plate, z_hub - relief, shaft),
             ),
-            seats_mm=(shaft,),
+            seat_mm=shaft,
+            rear=magnet_centre(shell.z_plate),
         ),
         coupling_part(
             (
@@ -152,6 +158,7 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
     dowels, flange_dowels = casing_dowel_holes(at, settings), _flange_dowel_holes(shell, settings)
     front_vents = vents(shell.r_flange, at.r_casing, casing.vent_wall_mm)
     z_plate, z_flange, z_lip = shell.z_plate, shell.z_flange, shell.z_lip
+    z_back = np.minimum(shell.z_stator_back, at.z_gear_back)
     return (
         housing_part(
             name="casing",
@@ -160,7 +167,7 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
                 *slab(-casing.plate_mm, 0.0, at.r_plate, at.r_open, mount, dowels, screws, flange_dowels, *front_vents),
                 *tube(at.z_bearing_front, -casing.plate_mm, at.r_seat, at.r_open),
                 *tube(-casing.rim_mm, -casing.plate_mm, at.r_plate, at.r_casing, mount, dowels),
-                *tube(z_plate + casing.flange_mm, -casing.rim_mm, at.r_casing + casing.wall_mm, at.r_casing),
+                *skirt(z_plate + casing.flange_mm, -casing.rim_mm, at, settings, at.r_bolts),
                 *tube(z_plate, z_plate + casing.flange_mm, at.r_plate, at.r_casing, mount),
             ),
             features=(
@@ -170,6 +177,10 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
                 bored(Circle(radius_mm=at.r_casing), z_plate, -casing.plate_mm, enters="low"),
             ),
             fits=(Fit(diameter_mm=settings.parts.interface.mount_dowel_mm, zone="H7"), FLANGE_DOWEL.hole_fit),
+            lengths=(
+                narrower("register", at.z_bearing_front, -casing.plate_mm),
+                Length(name="length", z0_mm=z_plate, z1_mm=-casing.plate_mm, lower_mm=0.0, upper_mm=2.0 * FINE_MM),
+            ),
             note="bore and faces in one clamping",
         ),
         housing_part(
@@ -182,18 +193,22 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
                 *tube(at.z_gear_front, z_lip, at.r_stator_in, shell.r_ring_lip),
                 *tube(at.z_gear_back, at.z_gear_front, at.r_stator_in, at.r_ring),
                 *tube(
-                    np.minimum(shell.z_stator_back, at.z_gear_back),
+                    z_back,
                     at.z_gear_back,
                     at.r_stator_in,
                     at.r_stator_in - casing.ring_wall_mm,
                 ),
             ),
             fits=(
-                Fit(diameter_mm=2.0 * at.r_seat, zone="J7", seat=True),
+                Fit(diameter_mm=2.0 * at.r_seat, zone="H7", seat=True),
                 Fit(diameter_mm=2.0 * at.r_ring, zone="H7", seat=True),
                 # A gap of 0.01 to 0.06 mm for the bond of a stator whose bore is H7; our own choice.
                 Fit(diameter_mm=2.0 * at.r_stator_in, zone="g6"),
                 FLANGE_DOWEL.hole_fit,
+            ),
+            lengths=(
+                wider("seat", at.z_bearing_back, -casing.plate_mm),
+                Length(name="length", z0_mm=z_back, z1_mm=-casing.plate_mm, lower_mm=-2.0 * FINE_MM, upper_mm=0.0),
             ),
             features=(
                 tapped(M3, (threads,), z_flange, -casing.plate_mm, enters="high"),
@@ -228,7 +243,9 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
     assert holes is not None
     back, threads = casing_holes(at, settings, M3.hole), motor_holes(motor, MOTOR_TAPPED_HOLE_MM)
     r_mount = 0.5 * (holes.pitch_circle_mm + holes.diameter_mm)
-    r_pad = 0.5 * (holes.pitch_circle_mm - holes.diameter_mm) - _PAD_RIM_MM
+    r_boss = rear_seat + casing.seat_wall_mm
+    r_free = 0.5 * (holes.pitch_circle_mm - holes.diameter_mm) - _PAD_RIM_MM
+    r_pad = np.where(r_free < r_boss + _LEAST_GAP_MM, r_boss, r_free)[()]
     back_vents = vents(r_mount + casing.vent_wall_mm, at.r_casing, casing.vent_wall_mm)
     return housing_part(
         name="backplate",
@@ -236,10 +253,10 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
         prisms=(
             *slab(shell.z_end, z_plate, at.r_plate, rear_seat - casing.lip_mm, back, threads, *back_vents),
             *tube(z_plate, shell.z_end + BACK_THREAD_MM, r_mount + _PAD_RIM_MM, r_pad, threads),
-            *tube(z_plate, shell.z_seat, rear_seat + casing.seat_wall_mm, rear_seat),
+            *tube(z_plate, shell.z_seat, r_boss, rear_seat),
             *spigot(z_plate, at, settings),
         ),
-        fits=(Fit(diameter_mm=2.0 * rear_seat, zone="J7", seat=True),),
+        fits=(Fit(diameter_mm=2.0 * rear_seat, zone="H7", seat=True),),
         features=(
             tapped(
                 screw_for(holes.diameter_mm, 0.5 * (holes.diameter_mm + MOTOR_TAPPED_HOLE_MM)),
@@ -297,6 +314,7 @@ def _motor_parts(at: Layout, shell: InternalLayout, motor: Motor, settings: Actu
             material=settings.materials.motor_stator,
             prisms=tube(z_stator_back, z_stator_back + height, at.r_stator_out, at.r_stator_in),
             catalogue_mass_kg=(1.0 - rotor_share) * kit.mass_kg,
+            catalogue_price_eur=motor.price_share_eur(1.0 - rotor_share),
             note=f"{motor.name}, frameless",
             joint=Joint(kind=JointKind.BONDED, how="bonded onto", partner="ring_housing"),
         ),
@@ -307,6 +325,8 @@ def _motor_parts(at: Layout, shell: InternalLayout, motor: Motor, settings: Actu
                 *slab(shell.z_coupling, z_bell, at.r_motor, bell_bore, screws, _bell_dowel_holes(settings)),
             ),
             catalogue_mass_kg=rotor_share * kit.mass_kg,
+            lengths=(envelope_length(shell.z_coupling, z_bell, name="bell"),),
+            catalogue_price_eur=motor.price_share_eur(rotor_share),
             features=(clearance(M3, (screws,), shell.z_coupling, z_bell, countersunk="high"),),
             note=f"{motor.name}, frameless; countersink the bell's holes",
         ),

@@ -14,26 +14,30 @@ from typing import Literal
 
 import numpy as np
 
-from pareto_monoped.actuator.bearings import Bearing, RetainingRing, main_bearing, retaining_ring, small_bearing
+from pareto_monoped.actuator.bearings import (
+    Bearing,
+    RetainingRing,
+    main_bearing,
+    retaining_ring,
+    small_bearing,
+    width_less_mm,
+)
 from pareto_monoped.actuator.gearset import GearSet
 from pareto_monoped.actuator.motor import AIR_GAP_MM, FramelessMotor, Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.webs import Webs, webs_of
 from pareto_monoped.geometry.dowels import Dowel
 from pareto_monoped.geometry.gears import ExternalGear
-from pareto_monoped.geometry.screws import LENGTHS_MM, screw_for
+from pareto_monoped.geometry.screws import LENGTHS_MM, M3, screw_for
 from pareto_monoped.geometry.shapes import Numbers
 
 Family = Literal["ISSPG", "ESSPG"]
 FAMILIES: tuple[Family, ...] = ("ISSPG", "ESSPG")
-SHAFT_GROOVE_WALL_MM = 0.75
-"""What is left of the carrier in front of a retaining ring's groove; our own choice. The rings keep the bearing in its
-place and carry no load of the leg. 1 kN along the axis bends the walls of a 50 mm shaft and a 65 mm bore with 54 and
-59 MPa."""
-BORE_GROOVE_WALL_MM = 0.6
-"""The same of the ring housing, behind the other ring's groove; our own choice."""
-_PLANET_TO_SEAT_MM = 0.2
-"""From that wall to the planets, which turn past it; our own choice."""
+_PLANET_TO_SEAT_MM = 0.25
+"""From the collar behind the bearing's ring to the planets, which turn past it, where they and the bearing are at the
+near ends of their limits: what the chain ``planets to the wall behind the groove`` takes else; our own choice."""
+BUSH_PLAY_MM = 0.2
+"""Between the ends of a planet's bush and the carriers: the bush stands out of the planet and keeps it in its place."""
 END_BEARING_BORE_MM = 6.0
 """Bore of the bearing that carries the sun's end in the carrier; our own choice."""
 
@@ -86,13 +90,18 @@ def radial_room_mm(motor: Motor, family: Family, settings: ActuatorSettings) -> 
 
 
 def ring_radius_mm(gears: GearSet, family: Family, settings: ActuatorSettings) -> Numbers:
-    """Return the ring's outer radius: fixed beyond the pitch circle (``paper``), or with a rim of some modules."""
+    """Return the ring's outer radius: fixed beyond the pitch circle (``paper``), or with a rim of some modules.
+
+    Its diameter is a multiple of 0.1 mm, for which there are gauges.
+    """
     data = settings.parts.gears
     if settings.rules == "iso6336":
-        return gears.ring_root_radius_mm + data.ring_rim_modules * gears.module_mm
-    return gears.ring_pitch_radius_mm + (
-        data.ring_width_internal_mm if family == "ISSPG" else data.ring_width_external_mm
-    )
+        radius = gears.ring_root_radius_mm + data.ring_rim_modules * gears.module_mm
+    else:
+        radius = gears.ring_pitch_radius_mm + (
+            data.ring_width_internal_mm if family == "ISSPG" else data.ring_width_external_mm
+        )
+    return np.ceil(20.0 * radius - 1e-6) / 20.0
 
 
 def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers, settings: ActuatorSettings) -> Layout:
@@ -114,12 +123,14 @@ def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers,
         r_ring = np.maximum(r_ring, 0.5 * bearing.outer_diameter_mm + casing.ring_lip_mm)
     shaft_ring = retaining_ring("DIN 471", bearing.inner_diameter_mm)
     bore_ring = retaining_ring("DIN 472", bearing.outer_diameter_mm)
-    z_bearing_front = -(carrier.flange_thickness_mm + SHAFT_GROOVE_WALL_MM + shaft_ring.thickness_mm)
+    z_bearing_front = -(carrier.flange_thickness_mm + shaft_ring.collar_mm + shaft_ring.thickness_mm)
     z_bearing_back = z_bearing_front - bearing.width_mm
     shoulder_mm: Numbers = carrier.shoulder_thickness_mm
     if family == "ESSPG":
         # The ring behind the bearing, and the wall behind its groove, end before the gears begin.
-        room_mm = bore_ring.thickness_mm + BORE_GROOVE_WALL_MM + _PLANET_TO_SEAT_MM
+        room_mm = bore_ring.thickness_mm + bore_ring.collar_mm + _PLANET_TO_SEAT_MM
+        play_mm = data.needles.washer_play_mm if settings.planet_bearing == "needles" else BUSH_PLAY_MM
+        room_mm = room_mm + width_less_mm(bearing.inner_diameter_mm) + play_mm
         shoulder_mm = np.maximum(shoulder_mm, room_mm - settings.planet_clearance_mm)
     z_shoulder = z_bearing_back - shoulder_mm
     z_gear_front = z_shoulder - settings.planet_clearance_mm
@@ -163,8 +174,12 @@ def layout(motor: Motor, family: Family, gears: GearSet, face_width_mm: Numbers,
 
 _NECK_RADIUS_MM = 3.8
 """Of the sun's neck, which touches the inner ring of its end bearing only (619/6: abutment from 7.6 mm diameter)."""
-_NECK_PLAY_MM = 0.2
-"""Axial play of the rotor between end bearing and rear bearing; our own choice."""
+NECK_PLAY_MM, NECK_WITHIN_MM = 0.2, 0.1
+"""From the sun's neck to its end bearing, and within which limits it is set when the sun is bonded; our own choice."""
+NECK_NOTE = (
+    f"bonded with its neck {NECK_PLAY_MM:g} +-{NECK_WITHIN_MM:g} mm from the end bearing, the carrier pushed towards "
+    "the motor"
+)
 COUPLING_DOWEL = Dowel(diameter_mm=2.5)
 """Between the coupling and what turns it; our own choice: they stand between screws of M3 or M4 on 22 mm."""
 DOWEL_STANDS_OUT_MM = 1.0
@@ -187,7 +202,7 @@ def sun_neck(at: Layout, settings: ActuatorSettings) -> SunNeck:
     r_journal = 0.5 * at.end_bearing.inner_diameter_mm
     room = at.r_carrier_in - settings.parts.casing.rotor_clearance_mm
     return SunNeck(
-        z=-at.end_bearing.width_mm - _NECK_PLAY_MM,
+        z=-at.end_bearing.width_mm - NECK_PLAY_MM,
         r_journal=r_journal,
         r=np.maximum(r_journal, np.minimum(_NECK_RADIUS_MM, room))[()],
     )
@@ -214,8 +229,14 @@ _FLANGE_WIDTH_MM = 6.0
 _FLANGE_BOLTS_MM = 3.2
 """From the tube to that flange's bolt circle. A hexagon head of M3, 6.01 mm over its corners, turns beside the tube; a
 spanner reaches it from the side, where the front plate bars a key."""
+THIN_WALL_MM = 0.75
+"""What is left of the casing's wall beside threads at least; our own choice: thinner ones give way to the tool."""
+_NOTCH_MM = 0.7
+"""How far the taps of that flange may cut into the casing's wall: 23 percent of the holes; our own choice."""
 _THREAD_SHARE = 0.6
 """Least depth of thread over the screw's diameter, as the export's check of held parts asks for."""
+_STEP_WALL_MM = 1.0
+"""By how much the step from boss to tube reaches beyond the groove, which weakens the boss; our own choice."""
 _RING_STEP_MM = 1.0
 """How far the ring stands out of its housing into the casing, which it centres; our own choice."""
 
@@ -224,10 +245,13 @@ _RING_STEP_MM = 1.0
 class ExternalLayout:
     """Radii and heights of coupling, motor and housing, in mm, beyond what ``Layout`` has.
 
-    From the front: the neck of the sun's shaft; the ring housing's seat and its ring's groove; flange and web, where
-    ring housing and casing meet; coupling; motor; backplate.
+    From the front: the neck of the sun's shaft; the ring housing's seat, its ring's groove, and the step between both
+    from the seat's boss to the tube around the ring; flange and web, where ring housing and casing meet; coupling;
+    motor; backplate.
     """
 
+    z_step: Numbers
+    z_groove: Numbers
     z_groove_back: Numbers
     z_seat_back: Numbers
     z_flange: Numbers
@@ -238,7 +262,6 @@ class ExternalLayout:
     z_end: Numbers
     r_boss: Numbers
     r_tube: Numbers
-    r_tube_in: Numbers
     r_flange: Numbers
     r_web: Numbers
     r_bolts: Numbers
@@ -255,13 +278,21 @@ def external_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> Ext
     z_motor = z_coupling - coupling_mm
     z_plate = z_motor - motor.framed.length_mm
     z_groove_back = at.z_bearing_back - at.bore_ring.thickness_mm
+    # The bearing presses the ring backwards; the groove's play is on its other side, under the bearing.
+    z_groove = z_groove_back + at.bore_ring.groove_width_mm
     z_flange = at.z_gear_back + _RING_STEP_MM
     r_boss = at.r_seat + casing.seat_wall_mm
     r_tube = np.maximum(at.r_ring + casing.ring_wall_mm, r_boss)
-    r_flange = r_tube + _FLANGE_WIDTH_MM
+    # A thread more than a quarter of which ends in the casing's wall has no way for its tap: it moves outwards.
+    near, far = (at.r_casing + by for by in (_NOTCH_MM - M3.core, THIN_WALL_MM + M3.core - _NOTCH_MM))
+    r_bolts = r_tube + _FLANGE_BOLTS_MM
+    r_bolts = np.where((r_bolts > near) & (r_bolts < far), far, r_bolts)[()]
+    r_flange = r_bolts + _FLANGE_WIDTH_MM - _FLANGE_BOLTS_MM
     return ExternalLayout(
+        z_step=z_groove + _STEP_WALL_MM,
+        z_groove=z_groove,
         z_groove_back=z_groove_back,
-        z_seat_back=z_groove_back - BORE_GROOVE_WALL_MM,
+        z_seat_back=z_groove_back - at.bore_ring.collar_mm,
         z_flange=z_flange,
         z_web=z_flange - casing.flange_mm,
         z_coupling=z_coupling,
@@ -270,10 +301,9 @@ def external_layout(at: Layout, motor: Motor, settings: ActuatorSettings) -> Ext
         z_end=z_plate - casing.plate_mm,
         r_boss=r_boss,
         r_tube=r_tube,
-        r_tube_in=np.maximum(at.r_ring - casing.ring_lip_mm, r_boss),
         r_flange=r_flange,
         r_web=np.maximum(r_flange, at.r_casing + casing.wall_mm),
-        r_bolts=r_tube + _FLANGE_BOLTS_MM,
+        r_bolts=r_bolts,
         neck=sun_neck(at, settings),
         coupling_mm=coupling_mm,
         base_mm=_frame_base_mm(motor, coupling_mm),

@@ -8,6 +8,8 @@ from pydantic import Field
 
 from pareto_monoped.actuator.windings import ResistanceKind, ThermalData, line_to_line_ohm, torque_constant_n_m_per_a
 from pareto_monoped.config import Positive, Strict
+from pareto_monoped.geometry.making import Length
+from pareto_monoped.geometry.shapes import Numbers
 
 # The search tries all tooth numbers that fit. Beyond this size it takes many seconds, and no leg needs such a motor.
 Diameter = Annotated[float, Field(gt=0.0, le=400.0, allow_inf_nan=False)]
@@ -138,6 +140,7 @@ class Motor(Strict):
     #: Of the rotor in the motor's active mass; default: the estimate of ``estimated_rotor_mass_share``
     rotor_mass_share: Share = 0.0
     thermal: ThermalData | None = None  #: measured thermal properties, or None
+    price_eur: Positive | None = None  #: list price, or None for that of its class in ``data/cost.toml``
 
     def __post_init__(self) -> None:
         # Zero stands for "not given": a value that is given is checked to be positive before it gets here.
@@ -193,6 +196,10 @@ class Motor(Strict):
     def terminal_resistance_ohm(self) -> float:
         """Line to line; its product with the square of torque over torque constant is the heat of all phases."""
         return line_to_line_ohm(self.winding_resistance_ohm, self.winding_resistance_kind)
+
+    def price_share_eur(self, share: float) -> float | None:
+        """Return the price of one of the parts that a motor is drawn as; None where the motor's file has no price."""
+        return None if self.price_eur is None else share * self.price_eur
 
     def current_a(self, torque_n_m: float) -> float:
         """Return DC-equivalent current of a torque."""
@@ -260,3 +267,12 @@ def mass_share(motor: Motor, rotor_kg_per_m3: float, stator_kg_per_m3: float) ->
     rotor = 1e-3 * rotor_kg_per_m3 * (motor.outer_diameter_mm**2 - (outer + 2.0 * AIR_GAP_MM) ** 2)
     stator = 1e-3 * stator_kg_per_m3 * (outer**2 - inner**2)
     return rotor / (rotor + stator)
+
+
+_ENVELOPE_MM = 0.1
+"""Within which a motor is as long as its drawing says; our own assumption, as the data sheets give no limits."""
+
+
+def envelope_length(z0_mm: Numbers, z1_mm: Numbers, name: str = "length") -> Length:
+    """Return a length of a motor with its limits."""
+    return Length(name=name, z0_mm=z0_mm, z1_mm=z1_mm, lower_mm=-_ENVELOPE_MM, upper_mm=_ENVELOPE_MM)

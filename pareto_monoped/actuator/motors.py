@@ -269,5 +269,6 @@ _LATER: Mapping[str, Callable[[Motor], Any]] = {
         motor, MATERIALS.motor_rotor.density_kg_per_m3, MATERIALS.motor_stator.density_kg_per_m3
     ),
     "thermal": lambda _: None,
+    "price_eur": lambda _: None,
 }
 """Fields that motors did not always have, and what they were before."""

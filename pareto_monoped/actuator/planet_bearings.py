@@ -5,21 +5,25 @@ from functools import partial
 import numpy as np
 
 from pareto_monoped.actuator.features import note_with, tube
-from pareto_monoped.actuator.layout import Layout
+from pareto_monoped.actuator.layout import BUSH_PLAY_MM, Layout
 from pareto_monoped.actuator.needles import NeedleRows, needle_rows
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.making import Length
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Role, Visibility
 from pareto_monoped.geometry.shapes import Numbers
 
-_BUSH_PLAY_MM = 0.2
-"""Between the ends of a planet's bush and the carriers: the bush stands out of the planet and keeps it in its place."""
 _BUSH_LENGTHS_MM = (4.0, 6.0, 8.0, 10.0)
 """Of bushes for pins of 6 mm (ISO 3547-1; makers add the shortest)."""
+_BUSH_LESS_MM = 0.1
+"""By how much it may be shorter, as it is cut; our own choice."""
+_WASHER_LESS_MM = 0.05
+"""By how much a washer of 1 to 2 mm may be thinner (DIN 988)."""
 _SPACER_PLAY_MM = 0.2
 """Radial play of a spacer ring on the pin and in the planet; our own choice."""
-_LEAST_SPACER_MM = 0.32
-"""Shorter spacers are left out: needles have so much room to either side; our own choice."""
+_LEAST_SPACER_MM = 0.75
+"""Thinner spacers cannot be turned: one of twice the thickness stands at one end instead, and below that none, so that
+needles have half as much room to either side; our own choice."""
 Place = tuple[Numbers, Numbers, Numbers]
 
 
@@ -29,7 +33,7 @@ def planet_bearing_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, 
 
 
 def _bushes(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
-    stands_out = settings.planet_clearance_mm - _BUSH_PLAY_MM
+    stands_out = settings.planet_clearance_mm - BUSH_PLAY_MM
     pin, planet_part = 0.5 * settings.parts.carrier.pin_diameter_mm, _planet_part(at)
     return (
         planet_part(
@@ -38,6 +42,15 @@ def _bushes(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             material=settings.materials.bush_bronze,
             prisms=tube(at.z_gear_back - stands_out, at.z_gear_front + stands_out, 0.5 * settings.planet_bore_mm, pin),
             process="bought",
+            lengths=(
+                Length(
+                    name="length",
+                    z0_mm=at.z_gear_back - stands_out,
+                    z1_mm=at.z_gear_front + stands_out,
+                    lower_mm=-_BUSH_LESS_MM,
+                    upper_mm=0.0,
+                ),
+            ),
             note=_bush_note(at.face_width_mm + 2.0 * stands_out, settings),
         ),
     )
@@ -97,6 +110,9 @@ def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             material=settings.materials.steel,
             prisms=tube(0.0, data.washer_mm, 0.5 * data.washer_diameter_mm, 0.5 * pin),
             process="bought",
+            lengths=(
+                Length(name="thickness", z0_mm=0.0, z1_mm=data.washer_mm, lower_mm=-_WASHER_LESS_MM, upper_mm=0.0),
+            ),
             note=note_with("DIN 988, {} x {} x {}", pin, data.washer_diameter_mm, data.washer_mm),
             places_mm=washer_places,
         ),
@@ -119,15 +135,27 @@ def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
 def _stacked(at: Layout, rows: NeedleRows) -> tuple[tuple[Place, ...], tuple[Place, ...], Numbers]:
     """Return the lower ends of the needles and of the spacers along a planet's bore, and the length of a spacer.
 
-    One row stands in the middle, with a spacer at either end. Two rows stand at the ends, the spacers between them. In
-    arrays, one row is drawn as two halves that touch.
+    One row stands in the middle, with a spacer at either end, or against the only one. Two rows stand at the ends, the
+    spacer between them. In arrays, one row and any spacer are drawn as two halves that touch.
     """
-    rest = at.face_width_mm - rows.total_mm
-    spacer = 0.5 * np.where(rest >= 2.0 * _LEAST_SPACER_MM, rest, 0.0)[()]
-    single, half = rows.rows == 1, 0.5 * rows.total_mm
-    low, high, middle = at.z_gear_back, at.z_gear_front, 0.5 * (at.z_gear_back + at.z_gear_front)
-    if np.ndim(single) == 0 and single:
-        return ((0.0, 0.0, middle - half),), ((0.0, 0.0, low), (0.0, 0.0, high - spacer)), spacer
-    needles = (np.where(single, middle - half, low)[()], np.where(single, middle, high - half)[()])
-    spacers = (np.where(single, low, middle - spacer)[()], np.where(single, high - spacer, middle)[()])
-    return tuple((0.0, 0.0, z) for z in needles), tuple((0.0, 0.0, z) for z in spacers), spacer
+    rest, low, high = at.face_width_mm - rows.total_mm, at.z_gear_back, at.z_gear_front
+    spacer = np.where(rest >= _LEAST_SPACER_MM, rest, 0.0)[()]
+    half = 0.5 * spacer
+    single, apart = rows.rows == 1, rest >= 2.0 * _LEAST_SPACER_MM
+    # Of one row: from the planet's lower face to the needles.
+    below = np.where(apart | (spacer == 0.0), 0.5 * rest, spacer)[()]
+    if np.ndim(single) == 0 and np.ndim(rest) == 0:
+        if single and apart:
+            return ((0.0, 0.0, low + below),), ((0.0, 0.0, low), (0.0, 0.0, high - half)), half
+        if single:
+            return ((0.0, 0.0, low + below),), ((0.0, 0.0, low),), spacer
+        length = 0.5 * rows.total_mm
+        return ((0.0, 0.0, low), (0.0, 0.0, high - length)), ((0.0, 0.0, low + length),), spacer
+    length = 0.5 * rows.total_mm
+    needles = (
+        np.where(single, low + below, low),
+        np.where(single, low + below, high) + np.where(single, length, -length),
+    )
+    first = np.where(single, low, low + length)
+    spacers = (first, np.where(single & apart, high - half, first + half))
+    return tuple((0.0, 0.0, z) for z in needles), tuple((0.0, 0.0, z) for z in spacers), half

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import Field
 
 from pareto_monoped.actuator.assumptions import (
@@ -39,6 +40,7 @@ class GearData(Strict):
     service_factor: Positive
     backlash_mm: Annotated[float, Field(ge=0.0)]
     backlash_modules: Annotated[float, Field(ge=0.0)]
+    backlash_least_mm: Annotated[float, Field(ge=0.0)]
     ring_width_internal_mm: Positive
     ring_width_external_mm: Positive
     ring_rim_modules: Positive
@@ -229,7 +231,11 @@ class ActuatorSettings:
 
     def tooth_thinning_mm(self, module_mm: Numbers) -> Numbers:
         """Return by how much each tooth is thinned on the reference circle; under ``paper``, all by the same."""
-        return self.parts.gears.backlash_mm if self.rules == "paper" else self.parts.gears.backlash_modules * module_mm
+        data = self.parts.gears
+        if self.rules == "paper":
+            return data.backlash_mm
+        thinner: Numbers = np.maximum(data.backlash_modules * module_mm, data.backlash_least_mm)
+        return thinner
 
     @property
     def thickness_series(self) -> int:

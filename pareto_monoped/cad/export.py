@@ -29,13 +29,14 @@ from pareto_monoped.cad.write.folder import RECORD, beside, chosen_formats, file
 from pareto_monoped.cad.write.meshes import visuals
 from pareto_monoped.cad.write.parameters import equations, parameters, parameters_csv
 from pareto_monoped.cad.write.readme import readme
-from pareto_monoped.cad.write.tables import checks_record, parts_list, strength_table
+from pareto_monoped.cad.write.tables import chain_table, checks_record, parts_list, strength_table
 from pareto_monoped.design import LENGTHS, Design
 from pareto_monoped.errors import CheckError
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.robot.population import robot_arrays
+from pareto_monoped.robot.tolerances import robot_chains
 from pareto_monoped.strength.factors import GearLife, gear_life, joint_factors
 from pareto_monoped.strength.joint import LOAD_NAMES, Loads, loads_of
 
@@ -171,6 +172,7 @@ def export_design(
             dimensions = parameters(product, leg_dimensions(maps))
             write(folder, "bom.csv", parts_list(product, factors))
             write(folder, "strength.csv", strength_table(factors))
+            write(folder, "tolerances.csv", chain_table(robot_chains(built.robot)))
             write(folder, "parameters.csv", parameters_csv(dimensions))
             write(folder, "monoped_equations.txt", equations(dimensions))
             write(folder, "checks.json", checks_record(checks))

@@ -81,9 +81,15 @@ def _spread(
 
 COARSE_PITCHES_MM = {2.0: 0.4, 2.5: 0.45, 3.0: 0.5, 4.0: 0.7, 5.0: 0.8, 6.0: 1.0, 8.0: 1.25}
 """Pitch of the metric coarse thread by its diameter (ISO 261)."""
+_TAP_RUN_OUTS_MM = {0.4: 1.5, 0.45: 1.6, 0.5: 1.8, 0.7: 2.4, 0.8: 2.7, 1.0: 3.2, 1.25: 3.9}
+"""What a blind hole is deeper than its thread, by the pitch (DIN 76-1, short run-outs e2)."""
 CHAMFER_MM = 0.3
 """Width of the chamfers at 45 degrees that lead one part into another: no more than the least corner radius of small
 bearings' rings (ISO 582: 0.3 mm); our own choice."""
+CENTRE_MM = (0.5, 1.06, 2.2)
+"""Radius, radius in the face, and depth of a centre hole for shafts of 6 to 10 mm (DIN 332-1, A 1 x 2.12)."""
+POINT_SHARE = 0.3
+"""Height of a drill's point over its diameter (118 degrees)."""
 LEAD_IN_MM = (0.2, 0.6)
 """Width and depth of lead-ins for press fits: 18 degrees, where 5 to 20 are usual; our own choice."""
 
@@ -94,6 +100,12 @@ class Cone(StrEnum):
     COUNTERSINK = "countersink"  # 90 degrees, takes a countersunk head
     CHAMFER = "chamfer"  # breaks an edge, or leads a tap into its hole
     LEAD_IN = "lead-in"  # long and slender, for pressing something in or on
+    CENTRE = "centre"  # 60 degrees, takes the point between which a shaft is ground
+
+
+def tap_run_out_mm(pitch_mm: float) -> float:
+    """Return how much deeper than its thread a blind hole is drilled; by the next pitch above if it is not listed."""
+    return next((value for pitch, value in _TAP_RUN_OUTS_MM.items() if pitch >= pitch_mm - 1e-9), 4.0 * pitch_mm)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,6 +130,11 @@ class Mouth:
     radius_mm: Numbers  #: in the face
     depth_mm: Numbers  #: from the face to where the cone meets the hole
     kind: Cone = Cone.CHAMFER  #: what it is for
+
+    @classmethod
+    def of_centre(cls, radius_mm: Numbers, hole_mm: Numbers) -> "Mouth":
+        """Return a cone of 60 degrees around a hole of radius ``hole_mm``, for the point of a lathe or grinder."""
+        return cls(radius_mm=radius_mm, depth_mm=np.sqrt(3.0) * (radius_mm - hole_mm), kind=Cone.CENTRE)
 
     @classmethod
     def at_90_degrees(cls, radius_mm: Numbers, hole_mm: Numbers, kind: Cone = Cone.CHAMFER) -> "Mouth":

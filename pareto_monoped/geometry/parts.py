@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.geometry.features import Bevel, Feature
-from pareto_monoped.geometry.making import Fit, ToothMaking
+from pareto_monoped.geometry.making import Fit, Length, ToothMaking
 from pareto_monoped.geometry.roles import Group, Joint, Role, Visibility
 from pareto_monoped.geometry.shapes import Circle, Floats, Moments, Numbers, Shape
 from pareto_monoped.geometry.tightening import Fastening
@@ -229,10 +229,13 @@ class Part:
     group: Group = Group.FIXED  #: what it moves with
     #: Mass of one instance if it is bought and its solid is only an envelope; replaces the density
     catalogue_mass_kg: Numbers | None = None
+    #: List price of one instance if it is bought and the price is known; else its class has one, see ``robot.cost``
+    catalogue_price_eur: float | None = None
     note: str = field(default="", compare=False)  #: what else the maker should know (standard, catalogue number)
     #: Alloy or steel grade with its condition, where the maker must keep to one
     grade: Alloy | GearGrade | None = field(default=None, compare=False)
     fits: tuple[Fit, ...] = field(default=(), compare=False)  #: tolerances of its round faces
+    lengths: tuple[Length, ...] = field(default=(), compare=False)  #: tolerances of lengths that others depend on
     #: Of its teeth, after ISO 1328-1; None without teeth, or where only the outline matters
     accuracy_class: int | None = field(default=None, compare=False)
     teeth: tuple[ToothMaking, ...] = field(default=(), compare=False)  #: how its teeth are made

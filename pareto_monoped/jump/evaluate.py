@@ -181,6 +181,8 @@ def _jump(
     for i in np.flatnonzero(~built):
         table.fail(rows[i], "no_gearbox", robots.reason[i])
     table.columns["mass_kg"][rows[built]] = robots.body_mass_kg[built].sum(axis=1)
+    for name in ("cost_eur", "made_parts", "bought_parts"):
+        table.columns[name][rows[built]] = getattr(robots, name)[built]
     pose = start_pose(robots, calibration)
     stands = np.array([not reason for reason in pose.reason], dtype=bool)
     for i in np.flatnonzero(built & ~stands):

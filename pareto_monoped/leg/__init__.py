@@ -12,6 +12,7 @@ stops; hip, knee, stop_parts; base, shank, thigh_outline; stand, thigh.
 __all__ = [
     "actuator_fit",
     "base",
+    "chain",
     "chain_drives",
     "dimensions",
     "electronics",

@@ -6,9 +6,9 @@ import numpy as np
 
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.features import bored, turned
-from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.making import Fit, Length
 from pareto_monoped.geometry.parts import Part, disc, layer, machined_part, sheet_part
-from pareto_monoped.geometry.roles import Role, Visibility
+from pareto_monoped.geometry.roles import Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, M4, clearance, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, Shape, hull
 from pareto_monoped.leg.dimensions import LegDimensions
@@ -26,6 +26,7 @@ _BORE_PLAY = 1.0  # of the near cheek around the hip's output flange
 # Of the holes that lighten the near cheek: their largest radius, and metal to its bore and to the mount's dowels.
 _RELIEF_MOST, _RELIEF_TO_BORE, _RELIEF_TO_DOWELS = 9.0, 4.5, 3.0
 # A slot between the rods that lightens both cheeks, 10 mm or more from the rods' holes.
+_ROD_OFF = 0.1  # all four are faced to one length in one set-up, within this of the drawing
 _SLOT_RADIUS, _SLOT_LENGTH = 10.0, 14.0
 _SLOT_RISE = 16.0  # of the centre of its upper end above the lower rods
 
@@ -148,11 +149,14 @@ def _far_cheek(z0_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                 layer(outline, z0_mm, seat_end, seat, *common),
                 layer(outline, seat_end, z0_mm + d.far_cheek_mm, lip, *common),
             ),
-            fits=(Fit(diameter_mm=2.0 * d.bearing_outer_radius_mm, zone="J7", seat=True),),
+            fits=(Fit(diameter_mm=2.0 * d.bearing_outer_radius_mm, zone="H7", seat=True),),
             features=(bored(seat, z0_mm, seat_end, enters="low"),),
             note=f"{d.far_cheek_mm:g} mm plate",
         ),
-        bearing_part("base_bearing", d, z0_mm=z0_mm),
+        replace(
+            bearing_part("base_bearing", d, z0_mm=z0_mm),
+            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="base_far_cheek"),
+        ),
     )
 
 
@@ -168,6 +172,7 @@ def _rods(far_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
             role=Role.ROD,
             prisms=(disc(d.rod_radius_mm, near_mm, far_mm, thread),),
             places_mm=places,
+            lengths=(Length(name="length", z0_mm=near_mm, z1_mm=far_mm, lower_mm=-_ROD_OFF, upper_mm=_ROD_OFF),),
             features=(
                 tapped(M4, (thread,), near_mm, far_mm, enters="both", usable_mm=ROD_THREAD),
                 turned(d.rod_radius_mm, near_mm, 1.0),

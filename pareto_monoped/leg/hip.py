@@ -3,7 +3,7 @@
 import numpy as np
 
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
-from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.making import Fit, narrower
 from pareto_monoped.geometry.parts import Part, disc, machined_part, strong_part
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.screws import M3, screw_part
@@ -67,6 +67,7 @@ def _hip_coupling(d: LegDimensions) -> tuple[Part, ...]:
             role=Role.COUPLING,
             prisms=tuple(disc(radius, z0, z1, *cut) for radius, z0, z1, cut in layers),
             fits=(_output_dowel(d.hip).hole_fit, Fit(diameter_mm=2.0 * SEAT_RADIUS, zone="R6", seat=True)),
+            lengths=(narrower("thickness", d.hip_mount_mm, -face),),
             note="between hip output and inner plate",
         ),
         _output_dowels(

@@ -4,8 +4,9 @@ there.
 
 from dataclasses import replace
 
+from pareto_monoped.actuator.bearings import CLEARANCE_GROUP, width_less_mm
 from pareto_monoped.geometry.features import turned
-from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.making import Fit, Length, narrower
 from pareto_monoped.geometry.parts import Part, disc, steel_part, strong_part
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import screw_for, screw_part
@@ -32,7 +33,16 @@ def bearing_part(
         ),
         catalogue_mass_kg=d.bearing_kg,
         note=f"6804, {2.0 * d.bearing_bore_radius_mm:g} x {2.0 * d.bearing_outer_radius_mm:g} x "
-        f"{d.bearing_width_mm:g} mm (ISO 15)",
+        f"{d.bearing_width_mm:g} mm (ISO 15) {CLEARANCE_GROUP}",
+        lengths=(
+            Length(
+                name="width",
+                z0_mm=z0_mm,
+                z1_mm=z0_mm + d.bearing_width_mm,
+                lower_mm=-width_less_mm(2.0 * d.bearing_bore_radius_mm),
+                upper_mm=0.0,
+            ),
+        ),
     )
     return part if places_mm is None else replace(part, places_mm=places_mm)
 
@@ -41,6 +51,8 @@ def bearing_part(
 _FLANGE = 4.0  # thickness, the grip of the screws
 _FLANGE_RIM = 5.0  # of metal outside the circle of the screws, whose heads stay within it
 _HEAD_ROOM = 6.5  # between flange and far cheek: heads of M5 are 5 mm high
+_FLOAT = 1.0  # from the shoulder to the bearing, which moves along the journal: both cheeks would else jam the leg
+_BEHIND = 1.0  # of the seat beyond the bearing, as far as the far cheek reaches
 _WALL = 3.0  # between the bearing's seat and the bore for cables
 _THREAD = 6.0  # M5 x 10 in the backplate of an ISSPG, M5 x 12 through that of an ESSPG, 5 mm into its motor
 
@@ -76,11 +88,13 @@ def journal_parts(
             role=Role.SHAFT,
             prisms=(
                 disc(d.knee.back_pitch_radius_mm + _FLANGE_RIM, back, flange, bore, holes),
-                disc(SHOULDER_RADIUS, flange, seat, bore),
-                disc(d.bearing_bore_radius_mm, seat, seat + d.bearing_width_mm, bore),
+                disc(SHOULDER_RADIUS, flange, seat - _FLOAT, bore),
+                disc(d.bearing_bore_radius_mm, seat - _FLOAT, seat + d.bearing_width_mm + _BEHIND, bore),
             ),
-            fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="h6", seat=True),),
-            features=(turned(d.bearing_bore_radius_mm, seat + d.bearing_width_mm, -1.0),),
+            # The bearing's inner ring moves along it.
+            fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="f6", seat=True),),
+            lengths=(narrower("reach", back, seat - _FLOAT),),
+            features=(turned(d.bearing_bore_radius_mm, seat + d.bearing_width_mm + _BEHIND, -1.0),),
             note="the bore takes the knee actuator's cables",
         ),
         screw_part(

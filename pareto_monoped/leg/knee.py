@@ -4,7 +4,7 @@ import numpy as np
 
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.features import bored, turned
-from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.making import Fit, narrower
 from pareto_monoped.geometry.parts import Part, Prism, disc, layer, machined_part, steel_part, strong_part
 from pareto_monoped.geometry.roles import Role, Visibility
 from pareto_monoped.geometry.screws import (
@@ -58,7 +58,7 @@ def knee_bearings(thigh_length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...
             visibility=Visibility.INSIDE,
             prisms=(disc(d.bearing_outer_radius_mm + _CUP_WALL, 0.0, d.bearing_width_mm, seat, threads),),
             places_mm=places,
-            fits=(Fit(diameter_mm=2.0 * d.bearing_outer_radius_mm, zone="J7", seat=True),),
+            fits=(Fit(diameter_mm=2.0 * d.bearing_outer_radius_mm, zone="H7", seat=True),),
             # One cup stands the other way round.
             features=(
                 bored(seat, 0.0, d.bearing_width_mm, enters="both"),
@@ -123,6 +123,7 @@ def _axle(d: LegDimensions) -> Part:
             *both(d.bearing_bore_radius_mm, blind, half_gap, dowels),
         ),
         fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="h6", seat=True), AXLE_DOWEL.hole_fit),
+        lengths=(narrower("shoulders", -shoulder, shoulder),),
         features=(turned(d.bearing_bore_radius_mm, half_gap, -1.0), turned(d.bearing_bore_radius_mm, -half_gap, 1.0)),
         note=f"axle and sprocket in one piece; {d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
     )
@@ -154,7 +155,8 @@ def _spacer(d: LegDimensions) -> Part:
         role=Role.SPACER,
         prisms=(disc(SHOULDER_RADIUS, 0.0, half_gap - half_thigh_gap, Circle(radius_mm=d.bearing_bore_radius_mm)),),
         places_mm=((0.0, 0.0, half_thigh_gap), (0.0, 0.0, -half_gap)),
-        note="clamps the bearing's inner ring; 0.05 mm longer than nominal",
+        note="clamps the bearing's inner ring; both ground until spacers and bearings together stand 0.02 to 0.05 mm "
+        "out over the axle's ends",
     )
 
 

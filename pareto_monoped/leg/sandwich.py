@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from pareto_monoped.geometry.features import CountersunkHead
+from pareto_monoped.geometry.making import Length
 from pareto_monoped.geometry.parts import Part, layer, steel_part
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import M3, Screw, cylinder, screw_length_mm
@@ -62,6 +63,7 @@ _OVERLAP = (6.0, 8.0)  # least and greatest length of thread
 _SLEEVE_MPA = 0.7 * 240.0
 # Pressure that the printed core bears for years: a third of its yield stress, 45 to 50 MPa for PETG (makers' data).
 _CORE_MPA = 15.0
+_CORE_MORE = 0.2  # by which a core may be thicker, of its layers; the bearings of the knee stand between its plates
 _CONE = 0.6  # by which the pressure of a head spreads in a plate, per depth (VDI 2230-1, eq. 44: 0.5 to 0.6)
 _CORE_LOCK = f"{LOCKER}, a drop inside the sleeve, as it may crack the printed core"
 # Our own layout, mm.
@@ -169,6 +171,7 @@ def core_part(
                 *holes_at(bolts_at(bridges), sleeve_hole(M3)),
             ),
         ),
+        lengths=(Length(name="thickness", z0_mm=-0.5 * gap_mm, z1_mm=0.5 * gap_mm, lower_mm=0.0, upper_mm=_CORE_MORE),),
         note="print lying on a plate side, solid; bond to both plates with epoxy, so that they cannot buckle",
     )
 

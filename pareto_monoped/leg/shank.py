@@ -34,7 +34,7 @@ _EAR_FILLET, _EAR_FOOT = 12.0, -72.0  # radius of the fillet below it, and heigh
 # Our own layout of the foot, mm.
 _FOOT_GAP = 1.0  # from the foot's flat to the plates, and from the foot's block to the core
 _BLOCK_WIDTH, _BLOCK_HEIGHT = 24.0, 34.0  # of the block between the plates, above the foot's flat
-_BLOCK_HOLE_RADIUS = 7.5  # lightens the block; 0.4 mm of metal are left to the holes of its bolts
+_BLOCK_HOLE_RADIUS = 7.4  # lightens the block; 0.5 mm of metal are left to the holes of its bolts
 _BLOCK_BOLT = 6.5  # from the ends of the block to its bolts: 3.9 mm of metal
 _TONGUE_WIDTH, _TONGUE_DEPTH, _TONGUE_HALF_THICKNESS = 16.0, 15.0, 5.0  # of the block's tongue in the foot
 

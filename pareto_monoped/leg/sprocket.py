@@ -12,7 +12,8 @@ from functools import lru_cache
 import numpy as np
 
 from pareto_monoped.actuator.needles import roller_bearing
-from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.features import Hole, Mouth
+from pareto_monoped.geometry.making import RELIEF_MM, Fit
 from pareto_monoped.geometry.parts import Part, Prism, disc, layer, steel_part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role
 from pareto_monoped.geometry.screws import M3
@@ -101,6 +102,7 @@ BOSS_RADIUS = SEAT_RADIUS + 1.0  # of the hip coupling, where it passes through 
 SHAFT_RADIUS = 0.5 * BEARING.inner_diameter_mm
 SUPPORT_BORE_RADIUS = 4.0  # lightens the shaft: 2 mm of hardened wall are left under the needles
 FLANGE = 3.0  # thickness, clamped between sprocket and drive coupling
+_CENTRE = SUPPORT_BORE_RADIUS + 0.5  # of the centres around its ends, between which the shaft is ground
 _OVERRUN = 0.5  # of the shaft beyond the bearing
 
 
@@ -111,12 +113,18 @@ def middle_mm() -> float:
 
 def support_parts(d: LegDimensions, flange_radius_mm: float, holes: tuple[Shape, ...]) -> tuple[Part, ...]:
     """Build shaft and bearing; ``holes`` are those of the drive's screws, and what lightens the coupling."""
-    half = 0.5 * d.chain.sprocket_width_mm
-    bore = Circle(radius_mm=SUPPORT_BORE_RADIUS)
+    half, (relief, depth) = 0.5 * d.chain.sprocket_width_mm, RELIEF_MM
+    bore, end, centre = (
+        Circle(radius_mm=SUPPORT_BORE_RADIUS),
+        BACK - _OVERRUN,
+        Mouth.of_centre(_CENTRE, SUPPORT_BORE_RADIUS),
+    )
     layers = (
         (flange_radius_mm, half, half + FLANGE, (bore, *holes)),
-        (BORE_RADIUS, -half, half, (bore,)),
-        (SHAFT_RADIUS, BACK - _OVERRUN, -half, (bore,)),
+        (BORE_RADIUS - depth, half - relief, half, (bore,)),
+        (BORE_RADIUS, -half, half - relief, (bore,)),
+        (SHAFT_RADIUS - depth, -half - relief, -half, (bore,)),
+        (SHAFT_RADIUS, end, -half - relief, (bore,)),
     )
     return (
         Part(
@@ -131,6 +139,7 @@ def support_parts(d: LegDimensions, flange_radius_mm: float, holes: tuple[Shape,
                 Fit(diameter_mm=2.0 * SHAFT_RADIUS, zone="h6", seat=True, raceway=True),
                 Fit(diameter_mm=2.0 * BORE_RADIUS, zone="h6"),
             ),
+            features=(Hole(shapes=(bore,), low_mm=end, high_mm=half + FLANGE, low=centre, high=centre),),
             # Makers of needle bearings ask 0.3 mm of raceways at least.
             note="raceway of the needle bearing, case-hardened at least 0.3 mm deep and ground",
         ),

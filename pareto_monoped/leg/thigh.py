@@ -5,7 +5,7 @@ from typing import Literal
 import numpy as np
 
 from pareto_monoped.geometry.dowels import Dowel
-from pareto_monoped.geometry.features import Hole
+from pareto_monoped.geometry.features import Hole, tap_run_out_mm
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, disc, layer, machined_part, sheet_part
 from pareto_monoped.geometry.roles import Role
@@ -38,7 +38,7 @@ _STANDOFF_ANGLES = (np.pi / 6, np.pi / 2, 5 * np.pi / 6)  # on top of the hip, w
 # The same where the circle of the knee actuator's screws is as small: between these and the dowels in their gaps.
 _SMALL_STANDOFF_ANGLES, _STANDOFF_ROOM = (np.pi / 4, 5 * np.pi / 12, 3 * np.pi / 4), 5.7
 _SPIGOT_RADIUS = 2.0  # of a standoff, in the inner plate
-_STANDOFF_THREAD, _TAP_RUNOUT = 8.0, 1.0  # depth of its tapped hole, and what the tap leaves below the screw
+_STANDOFF_THREAD = 7.0  # in a standoff
 _STANDOFF_RIM = 5.5  # of the inner plate outside the standoffs' axes: 3.4 mm around their bolts
 _BOSS_PLAY = 0.05  # of the inner plate around the hip coupling's boss
 _INNER_RELIEF_RADIUS, _INNER_RELIEF_PITCH_RADIUS = 5.5, 25.5  # six holes between screws and standoffs
@@ -178,17 +178,18 @@ def _standoffs(places: tuple[Place, ...], d: LegDimensions) -> tuple[Part, ...]:
     """
     half_gap, face = 0.5 * d.gap_mm, d.thigh_face_mm
     thread = (Circle(radius_mm=M3.core),)
+    tap = half_gap - _STANDOFF_THREAD - tap_run_out_mm(M3.thread.pitch_mm)
     pillar = machined_part(
         name="thigh_standoff",
         role=Role.SPACER,
         prisms=(
             disc(_SPIGOT_RADIUS, -face, -half_gap),
-            disc(_STANDOFF_RADIUS, -half_gap, half_gap - _STANDOFF_THREAD),
-            disc(_STANDOFF_RADIUS, half_gap - _STANDOFF_THREAD, half_gap, *thread),
+            disc(_STANDOFF_RADIUS, -half_gap, tap),
+            disc(_STANDOFF_RADIUS, tap, half_gap, *thread),
         ),
         places_mm=places,
         fits=(Fit(diameter_mm=2.0 * _SPIGOT_RADIUS, zone="h6"),),
-        features=(tapped(M3, thread, half_gap - _STANDOFF_THREAD, half_gap, enters="high"),),
+        features=(tapped(M3, thread, tap, half_gap, enters="high", usable_mm=_STANDOFF_THREAD),),
         note="spigot into the inner plate, screwed to the outer one",
     )
     screw = screw_part(
@@ -197,7 +198,7 @@ def _standoffs(places: tuple[Place, ...], d: LegDimensions) -> tuple[Part, ...]:
         head="countersunk",
         seat_mm=face,
         grip_mm=d.plate_mm,
-        room_mm=_STANDOFF_THREAD - _TAP_RUNOUT,
+        room_mm=_STANDOFF_THREAD,
         direction=-1.0,
         places_mm=places,
         note="flush, under the knee actuator",

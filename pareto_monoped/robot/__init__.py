@@ -1,6 +1,6 @@
 """Design -> Robot: the one place where actuators, links and base become bodies with masses and inertias.
 
-Order of imports, lowest first: units; build, tables; population.
+Order of imports, lowest first: cost, units; build, tables; population, tolerances.
 """
 
-__all__ = ["build", "population", "units"]
+__all__ = ["build", "cost", "population", "tolerances", "units"]

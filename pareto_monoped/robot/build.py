@@ -13,6 +13,7 @@ from pareto_monoped.design import Design
 from pareto_monoped.geometry.parts import MassProperties, Part, total
 from pareto_monoped.geometry.shapes import Floats
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
+from pareto_monoped.robot.cost import Cost, robot_cost
 from pareto_monoped.robot.units import BODIES, UNITS, ActuatorSized, LinkSized, in_body
 
 
@@ -62,6 +63,11 @@ class Robot:
     def mass_kg(self) -> float:
         """Mass of the whole robot."""
         return float(sum(unit.mass_properties().mass_kg for unit in self.units))
+
+    @property
+    def cost(self) -> Cost:
+        """What all parts cost, roughly, and how many are made and bought."""
+        return robot_cost(unit.parts for unit in self.units)
 
 
 def build_robot(design: Design, maps: Maps) -> Robot:

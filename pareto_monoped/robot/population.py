@@ -17,7 +17,14 @@ from pareto_monoped.geometry.parts import MassProperties
 from pareto_monoped.geometry.shapes import Floats
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
-from pareto_monoped.robot.tables import actuator_table, actuator_units, drive_turning, weighed
+from pareto_monoped.robot.tables import (
+    actuator_costs,
+    actuator_table,
+    actuator_units,
+    drive_turning,
+    link_costs,
+    weighed,
+)
 from pareto_monoped.robot.units import BODIES, JOINTS, UNITS, ActuatorSized
 
 
@@ -83,6 +90,10 @@ class RobotArrays:
     #: resistance is line to line; shape (n, 2)
     torque_constant_n_m_per_a: Floats
     winding_resistance_ohm: Floats
+    #: cost_eur, made_parts, bought_parts: rough cost of all parts and how many are made and bought, shape (n,)
+    cost_eur: Floats
+    made_parts: Floats
+    bought_parts: Floats
     reason: tuple[str, ...]  #: why the robot cannot be built, empty if it can, n strings
     stops: JointStops  #: the end stops, which all robots with the same actuator maps share
 
@@ -118,6 +129,7 @@ def robot_arrays(designs: ArrayLike, maps: Maps, options: MassOptions = PARTS_ON
 
     bodies = _body_masses(_unit_masses(both, leg, values, rows), options)
     turning = _turning(of_actuators, leg, values[:, NAMES.index("thigh_length_m")], options)
+    cost_eur, made, bought = _costs(both, leg, values, rows)
     foot_radius_m = leg.foot_radius_mm * 1e-3 if options.foot_radius_m is None else options.foot_radius_m
     return RobotArrays(
         thigh_length_m=values[:, NAMES.index("thigh_length_m")].copy(),
@@ -136,6 +148,9 @@ def robot_arrays(designs: ArrayLike, maps: Maps, options: MassOptions = PARTS_ON
         efficiency_total=of_actuators("efficiency_total"),
         torque_constant_n_m_per_a=of_motors("torque_constant_n_m_per_a"),
         winding_resistance_ohm=of_motors("terminal_resistance_ohm"),
+        cost_eur=cost_eur,
+        made_parts=made,
+        bought_parts=bought,
         reason=reason,
         stops=JointStops(hip=hip_stop(leg), knee=knee_stop(leg)),
     )
@@ -180,6 +195,16 @@ def _unit_masses(
         elif unit.name not in masses:  # all units of one length come from one table
             masses |= weighed(unit.length, leg, values[:, NAMES.index(unit.length)])
     return masses
+
+
+def _costs(maps: JointMaps, leg: LegDimensions, values: Floats, rows: Mapping[str, NDArray[np.intp]]) -> Floats:
+    """Return cost, made and bought parts of every robot, shape (3, n), of the units of ``_unit_masses``."""
+    lengths = dict.fromkeys(unit.length for unit in UNITS if not isinstance(unit, ActuatorSized))
+    of_joints = [actuator_costs(joint, maps.of(joint), leg)[:, rows[joint]] for joint in JOINTS]
+    costs = reduce(add, [*of_joints, *(link_costs(name, leg, values[:, NAMES.index(name)]) for name in lengths)])
+    if maps.hip is maps.knee:  # equal gearboxes have the same parts, whose set-ups are paid once
+        costs[0] -= np.where(rows["hip"] == rows["knee"], of_joints[JOINTS.index("hip")][3], 0.0)
+    return np.asarray(costs[:3])
 
 
 def _body_masses(units: dict[str, MassProperties], options: MassOptions) -> list[MassProperties]:

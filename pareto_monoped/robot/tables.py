@@ -1,4 +1,4 @@
-"""Fast weighing: the units of a map's actuators as arrays, and those of the links as functions of their length.
+"""Fast weighing and pricing: the units of a map's actuators as arrays, those of links as functions of their length.
 
 A link is one smooth function of its length. Interpolated in Chebyshev points, this function is exact to the last
 digits, and evaluating it takes a few operations for any number of lengths (Trefethen, Approximation Theory and
@@ -31,6 +31,7 @@ from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.shapes import Floats
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.thigh import thigh_parts
+from pareto_monoped.robot.cost import priced
 from pareto_monoped.robot.units import UNITS, ActuatorSized, LinkSized
 
 _LENGTHS_M = (0.3, 0.5)  # two lengths fix a straight line; any two do
@@ -96,6 +97,7 @@ def _line(values: list[float]) -> tuple[float, float]:
 
 Weigh = Callable[[Floats], Sequence[MassProperties]]
 """Lengths in metres, shape (n,) -> the mass properties of each of the m units, one row per length."""
+_Values = Callable[[Floats], Floats]
 _EXACT = 1e-13  # of the largest mass, first or second moment: a few hundred roundings, which no jump can show
 _MOST_NODES = 128
 # Upper triangle of the second moments, which are symmetric.
@@ -105,20 +107,25 @@ _WIDTH = 1 + 3 + len(_ROWS)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tabulated:
-    """The mass properties of m units over a range of lengths."""
+    """The mass properties of m units over a range of lengths, or other numbers."""
 
     low_m: float
     high_m: float
-    coefficients: Floats  #: of the Chebyshev series, shape (k, 10 m): mass, first and second moments of each unit
+    #: Of the Chebyshev series, shape (k, rows); rows are 10 m: mass, first and second moments of each unit
+    coefficients: Floats
 
     def covers(self, lengths_m: Floats) -> NDArray[np.bool_]:
         """Return which lengths are in the range, shape (n,)."""
         return np.asarray((self.low_m <= lengths_m) & (lengths_m <= self.high_m))
 
-    def __call__(self, lengths_m: Floats) -> tuple[MassProperties, ...]:
-        """Return the m units for lengths, shape (n,); Clenshaw's recurrence has the same order for each of them."""
+    def numbers(self, lengths_m: Floats) -> Floats:
+        """Return the series at lengths, shape (rows, n); Clenshaw's recurrence has the same order for each of them."""
         place = (2.0 * lengths_m - (self.low_m + self.high_m)) / (self.high_m - self.low_m)
-        values: Floats = np.asarray(chebval(place, self.coefficients), dtype=np.float64)
+        return np.asarray(chebval(place, self.coefficients), dtype=np.float64)
+
+    def __call__(self, lengths_m: Floats) -> tuple[MassProperties, ...]:
+        """Return the m units for lengths, shape (n,)."""
+        values = self.numbers(lengths_m)
         return tuple(_unfolded(values[i : i + _WIDTH]) for i in range(0, len(values), _WIDTH))
 
 
@@ -128,25 +135,30 @@ def tabulate(weigh: Weigh, low_m: float, high_m: float) -> Tabulated:
     Raises:
         ValueError: the units do not change smoothly with the length.
     """
+    return _tabulated("mass properties", lambda lengths_m: _folded(weigh(lengths_m)), _sizes, low_m, high_m)
+
+
+def _tabulated(what: str, values_of: _Values, sizes_of: _Values, low_m: float, high_m: float) -> Tabulated:
+    """Tabulate the rows of ``values_of``, exact to a share of their ``sizes_of``."""
     between = np.linspace(low_m, high_m, 51)
-    wanted = _folded(weigh(between))
-    scale = _sizes(wanted)
+    wanted = values_of(between)
+    scale = sizes_of(wanted)
     nodes = 8
     while nodes <= _MOST_NODES:
-        table = Tabulated(low_m=low_m, high_m=high_m, coefficients=_series(weigh, low_m, high_m, nodes))
-        if np.all(np.abs(_folded(table(between)) - wanted) <= _EXACT * scale):
+        table = Tabulated(low_m=low_m, high_m=high_m, coefficients=_series(values_of, low_m, high_m, nodes))
+        if np.all(np.abs(table.numbers(between) - wanted) <= _EXACT * scale):
             return table
         nodes += 4
     raise ValueError(
-        f"mass properties over {low_m} to {high_m} m: not smooth in the length to {_EXACT:g} with {_MOST_NODES} nodes; "
+        f"{what} over {low_m} to {high_m} m: not smooth in the length to {_EXACT:g} with {_MOST_NODES} nodes; "
         "let no count or choice depend on the length"
     )
 
 
-def _series(weigh: Weigh, low_m: float, high_m: float, nodes: int) -> Floats:
+def _series(values_of: _Values, low_m: float, high_m: float, nodes: int) -> Floats:
     """Return the interpolant's coefficients in Chebyshev points of the first kind, summed in a fixed order."""
     angles = np.pi * (np.arange(nodes) + 0.5) / nodes
-    values = _folded(weigh(0.5 * (low_m + high_m) + 0.5 * (high_m - low_m) * np.cos(angles)))
+    values = values_of(0.5 * (low_m + high_m) + 0.5 * (high_m - low_m) * np.cos(angles))
     waves = np.cos(np.outer(np.arange(nodes), angles))
     result = 2.0 / nodes * reduce(np.add, [np.outer(waves[:, k], values[:, k]) for k in range(nodes)])
     result[0] *= 0.5
@@ -233,6 +245,13 @@ def actuator_units(joint: str, actuator_map: ActuatorMap, leg: LegDimensions) ->
     }
 
 
+@lru_cache(maxsize=128)
+def actuator_costs(joint: str, actuator_map: ActuatorMap, leg: LegDimensions) -> Floats:
+    """Return the rows of ``priced`` for the same units with every actuator of a map, shape (4, k). It is kept."""
+    kinds = [unit for unit in UNITS if isinstance(unit, ActuatorSized) and unit.joint == joint]
+    return np.stack([priced(unit.parts(one, leg) for unit in kinds) for one in _actuators(actuator_map)], axis=1)
+
+
 def _stacked(units: Iterable[tuple[Part, ...]]) -> MassProperties:
     masses = [total(part.mass_properties() for part in parts) for parts in units]
     return MassProperties(
@@ -271,3 +290,29 @@ def weighed(length: str, leg: LegDimensions, lengths_m: Floats) -> dict[str, Mas
             mass.first_kg_m[beyond] = exact.first_kg_m
             mass.second_kg_m2[beyond] = exact.second_kg_m2
     return dict(zip((unit.name for unit in link_units(length)), masses, strict=True))
+
+
+def _priced(length: str, leg: LegDimensions, lengths_m: Floats) -> Floats:
+    return priced(unit.parts(lengths_m, leg) for unit in link_units(length))
+
+
+@lru_cache(maxsize=128)
+def _cost_table(length: str, leg: LegDimensions) -> Tabulated:
+    return _tabulated(
+        "costs",
+        lambda lengths_m: _priced(length, leg, lengths_m),
+        lambda wanted: np.abs(wanted).max(axis=1, keepdims=True),
+        *_TABULATED_M,
+    )
+
+
+def link_costs(length: str, leg: LegDimensions, lengths_m: Floats) -> Floats:
+    """Return the rows of ``priced`` for the units of a link length, shape (4, n): as exact as ``weighed``."""
+    table = _cost_table(length, leg)
+    beyond = ~table.covers(lengths_m)
+    costs = table.numbers(np.clip(lengths_m, table.low_m, table.high_m))
+    if beyond.any():
+        costs[:, beyond] = _priced(length, leg, lengths_m[beyond])
+    # Pieces are whole numbers, which the series gives to rounding only.
+    costs[1:3] = np.round(costs[1:3])
+    return costs

@@ -12,6 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from pareto_monoped.actuator.bearings import RetainingRing
 from pareto_monoped.actuator.front import z_pin_front
 from pareto_monoped.actuator.gearset import load_sharing
 from pareto_monoped.actuator.layout import Layout, layout
@@ -25,6 +26,7 @@ from pareto_monoped.materials import ALLOYS, Materials
 from pareto_monoped.strength.connections import (
     BOND_SAFETY,
     FRICTION,
+    MISES,
     SHAPE_SAFETY,
     SLIP_SAFETY,
     bearing_force_n,
@@ -336,3 +338,42 @@ _WEBS: tuple[_Row, ...] = (
         (1.2, _REASON), bending, ("carrier",)),
 )  # fmt: skip
 WEB_JOINTS = tuple(_loaded(side, row) for side in SIDES for row in _WEBS)
+
+
+def collar_force_n(ring: RetainingRing, yielding_mpa: float) -> float:
+    """Return the force along the axis at which a retaining ring yields the metal around its groove.
+
+    The ring presses on half the depth t of the groove d2 in the mean, so that a collar of thickness n bends at its root
+    with 3 F t / (pi d2 n^2) and shears with F / (pi d2 n); the groove's wall takes F over its own area. That the collar
+    is closed around, and stiffer than a beam, is not counted. Rings of spring steel carry several times as much.
+    """
+    d1, d2, n = float(ring.size_mm), float(ring.groove_diameter_mm), float(ring.collar_mm)
+    depth, around = 0.5 * abs(d2 - d1), np.pi * d2
+    bent, sheared, pressed = around * n**2 / (3.0 * depth), around * n * MISES, 0.25 * np.pi * abs(d2**2 - d1**2)
+    return float(yielding_mpa * min(bent, sheared, pressed))
+
+
+def retaining_rings(s: Structure) -> float:
+    """Return the force along the axis that the rings beside an actuator's main bearing carry."""
+    at, grades = layout_of(s), {part.name: yield_mpa(part) for part in s.actuator.parts if part.grade is not None}
+    forces = [collar_force_n(at.shaft_ring, grades["carrier"])]
+    if s.actuator.family == "ESSPG":
+        forces.append(collar_force_n(at.bore_ring, grades["ring_housing"]))
+    return min(forces)
+
+
+_SIDEWAYS: dict[Side, tuple[str, float, str]] = {
+    "hip": ("peak_foot_force_n", 1.0, "rubber slips at 0.6 to 0.9 of its load"),
+    "knee": ("peak_chain_tension_n", 0.05, "sprockets out of line by 3 degrees"),
+}
+"""What the floor or the chain may push along the joint's axis: the load, its share, and why; our own choice, as the leg
+is simulated in its plane."""
+RING_JOINTS = tuple(
+    ActuatorJoint(name=f"{side}_retaining_rings", group="joints", side=side,
+        formula=f"least of pi d2 n^2 / (3 t), pi d2 n / sqrt(3), groove's wall, times Rp0.2 / ({share:g} F)",
+        source=f"collar as a cantilever and in shear, DIN 471 and 472; {why}", required=1.2,
+        required_source="our own choice against yield", loads=(load,),
+        capacity=retaining_rings, factor=lambda force, load, share=share: force / (share * load),
+        parts=("retaining_ring", "bore_retaining_ring", "carrier", "ring_housing"), cure="jump lower")
+    for side, (load, share, why) in _SIDEWAYS.items()
+)  # fmt: skip

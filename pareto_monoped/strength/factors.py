@@ -36,6 +36,7 @@ TABLE: tuple[ActuatorJoint | LegJoint, ...] = (
     *stops.STOP_JOINTS,
     *drive.JOINTS,
     *drive.WEB_JOINTS,
+    *drive.RING_JOINTS,
     *knee.CHAIN_SUPPORT_JOINTS,
     *mounts.JOINTS,
     *threads.JOINTS,

@@ -146,14 +146,14 @@ def _moment_mm(s: Structure, height_mm: float) -> float:
 
 
 def shaft_n(s: Structure) -> float:
-    """Return the chain's pull at which the stub of the shaft yields where it leaves the sprocket."""
+    """Return the chain's pull at which the stub of the shaft yields where it leaves the sprocket, in its relief."""
     shaft = _drive(s, Role.SHAFT)
-    stub = min(shaft.prisms, key=lambda prism: float(prism.z0_mm))
+    stub, relief, *_ = sorted(shaft.prisms, key=lambda prism: float(prism.z0_mm))
     (bore,) = stub.holes
-    assert isinstance(stub.outline, Circle)
+    assert isinstance(relief.outline, Circle)
     assert isinstance(bore, Circle)
-    modulus = tube_modulus_mm3(float(stub.outline.radius_mm), float(bore.radius_mm))
-    return yield_mpa(shaft) * modulus / _moment_mm(s, float(stub.z1_mm))
+    modulus = tube_modulus_mm3(float(relief.outline.radius_mm), float(bore.radius_mm))
+    return yield_mpa(shaft) * modulus / _moment_mm(s, float(relief.z1_mm))
 
 
 def _rim_inside_holes(coupling: Part) -> tuple[float, float]:

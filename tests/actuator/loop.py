@@ -3,7 +3,7 @@
 The rules are written out again from their sources; only the parts' masses are the package's, one actuator at a time.
 """
 
-from math import acos, atan, cos, hypot, pi, radians, sin, sqrt
+from math import acos, atan, ceil, cos, hypot, pi, radians, sin, sqrt
 
 from pareto_monoped.actuator.actuator import build_actuator
 from pareto_monoped.actuator.bearings import catalogue
@@ -77,14 +77,15 @@ def allowed(motor, family, sun, planet, ring, module, planets, width):
     rules.append(bearing is not None)
     if bearing is None or not all(rules):
         return False
+    # The ring's diameter is the next tenth of a millimetre.
+    ring_mm = ceil(10 * (module * ring + (5.0 if family == "ISSPG" else 6.0)) - 1e-6) / 10
+    wall = ring_mm / 2 - module * (ring / 2 + 1.25)
     if family == "ISSPG":
-        wall = 2.5 - 1.25 * module
         rules.append(width <= body.stator_height_mm + 1e-9)
         rules.append(bearing[1] / 2 + 2.0 + 7.0 <= body.outer_diameter_mm / 2 + 2.3 + 1e-9)
     else:
-        wall = 3.0 - 1.25 * module
         rules.append(module * (sun / 2 - 1.25) - 3.0 >= 1.2 * depth - 1e-9)
-        rules.append(bearing[1] / 2 <= module * ring / 2 + 3.0 - 1.0 + 1e-9)
+        rules.append(bearing[1] / 2 <= ring_mm / 2 - 1.0 + 1e-9)
     rules.append(wall >= 3.5 * module - 1e-9)
     return all(rules)
 
@@ -99,7 +100,7 @@ def allowed_by_iso6336(motor, family, gears, width):
     worth = 2.0 / sin(ALPHA) ** 2
     if ring.tip <= ring.base:
         return False
-    thinner = 0.03 * module
+    thinner = max(0.03 * module, 0.017)
     sun_root, planet_root = (
         module * (gear.teeth / 2 + teeth.generated(gear, thinner / module).x - 1.25) for gear in (sun, planet)
     )
@@ -107,7 +108,7 @@ def allowed_by_iso6336(motor, family, gears, width):
         sum(counts[::2]) % planets == 0,
         module * ring.teeth <= room + 1e-9,
         module * (ring.teeth + 2 * ring.x + 2.5) <= room + 2e-9,
-        planet_root - 4.0 >= 1.2 * 2.25 * module - 1e-9,
+        planet_root - (3.0 + 1.5) >= 1.2 * 2.25 * module - 1e-9,  # needles of 1.5 mm around a pin of 6 mm
         sun_root >= 3.0 - 1e-9,
         *(gear.teeth + worth * gear.x >= 18 - 1e-9 for gear in (sun, planet)),
     ]

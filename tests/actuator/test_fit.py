@@ -122,6 +122,26 @@ def test_interfaces_are_as_deep_as_the_holes_of_the_parts(vt_map):
         assert mount.housing_radius_mm == pytest.approx(max(ring.r1 for part in plain for ring in rings(part)))
 
 
+@pytest.mark.parametrize("rules", ["iso6336", "paper"])
+def test_rings_are_rounded_up_to_a_tenth_that_a_gauge_exists_for(rules):
+    """Roots and rim of 3.5 modules, or the pitch circle and 5 or 6 mm; never thinner, by less than 0.1 mm thicker."""
+    found = map_for("VT8020", rules)
+    for entry in found.entries:
+        if entry.actuator is None:
+            continue
+        actuator = entry.actuator
+        gears, (ring,) = actuator.gears, [part for part in actuator.parts if part.name == "ring"]
+        outer = 2.0 * float(ring.prisms[0].outline.radius_mm)
+        exact = 2.0 * (gears.ring_root_radius_mm + 3.5 * gears.module_mm)
+        if rules == "paper":
+            exact = gears.module_mm * gears.ring_teeth + (5.0 if actuator.family == "ISSPG" else 6.0)
+        (bearing,) = (r for part in actuator.parts if part.name == "main_bearing" for r in rings(part))
+        if rules == "iso6336" and actuator.family == "ESSPG":
+            exact = max(exact, 2.0 * bearing.r1 + 2.0)  # which passes its shoulder
+        assert 10.0 * outer == pytest.approx(round(10.0 * outer), abs=1e-6)
+        assert exact - 1e-6 <= outer < exact + 0.1
+
+
 @pytest.mark.parametrize("name", motor_names())
 def test_interfaces_do_not_depend_on_the_gear_set(name):
     found = list(bests(name))

@@ -106,7 +106,7 @@ def sets_in(tenths):
                             planets=planets,
                             centre_shift=centre_shift,
                             sun_shift=sun_shift,
-                            backlash_mm=0.03 * module,
+                            backlash_mm=max(0.03 * module, 0.017),
                             tips_fitted=True,
                         )
 

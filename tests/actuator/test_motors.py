@@ -139,6 +139,16 @@ def test_stored_motors_read_back_equal(name):
     assert ("thermal" in values, "winding_resistance_kind" in values) == (name == "U8", name == "MAD_M6C12")
 
 
+def test_a_price_is_stored_where_there_is_one(tmp_path):
+    """Studies stored before there were prices keep their hash."""
+    assert "price_eur" not in motor_values(load_motor("U8"))
+    motor = load_motor(written(tmp_path, "price_eur = 310.0\n" + GOOD))
+    assert motor_values(motor)["price_eur"] == 310.0
+    assert stored_motor(motor_values(motor), source="x") == motor
+    with pytest.raises(MotorError, match=r"price_eur = -1.0: must be above 0"):
+        load_motor(written(tmp_path, "price_eur = -1.0\n" + GOOD))
+
+
 def test_a_motor_stored_by_0_1_0_is_what_it_was():
     """No copper in the stator, hence a heavier rotor; nothing but what was stored is stored again."""
     values = motor_values(load_motor("VT8020"))

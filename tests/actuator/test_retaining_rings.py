@@ -122,6 +122,39 @@ def test_every_groove_is_as_wide_as_its_standard_says_and_holds_its_ring_against
             )
 
 
+@pytest.mark.parametrize(
+    ("standard", "size", "collar"),
+    [("DIN 471", 40.0, 0.75), ("DIN 472", 72.0, 0.75), ("DIN 471", 80.0, 0.875), ("DIN 472", 110.0, 1.0)],
+)
+def test_collars_are_half_as_thick_as_their_grooves_are_deep_and_no_thinner_than_can_be_turned(standard, size, collar):
+    """Grooves of 37.5, 75, 76.5 and 114 mm are 1.25, 1.5, 1.75 and 2 mm deep."""
+    assert float(retaining_ring(standard, size).collar_mm) == pytest.approx(collar)
+
+
+@pytest.mark.parametrize("motor", ["VT8020", "U12"])
+def test_collars_are_drawn_between_groove_and_end_of_the_seat(motor):
+    for entry in map_for(motor).entries:
+        if entry.actuator is None:
+            continue
+        parts = {part.name: part for part in entry.actuator.parts}
+        (ring,), carrier = parts["retaining_ring"].prisms, parts["carrier"]
+        bore = 2.0 * float(parts["main_bearing"].prisms[0].holes[0].radius_mm)
+        (collar,) = (p for p in carrier.prisms if p.z0_mm == ring.z1_mm)
+        assert collar.outline.radius_mm == 0.5 * bore
+        assert collar.z1_mm - collar.z0_mm == pytest.approx(float(retaining_ring("DIN 471", bore).collar_mm))
+        if "bore_retaining_ring" in parts:
+            (ring,), outer = (
+                parts["bore_retaining_ring"].prisms,
+                float(parts["main_bearing"].prisms[0].outline.radius_mm),
+            )
+            behind = [
+                p for p in parts["ring_housing"].prisms if p.holes[0].radius_mm == outer and p.z1_mm == ring.z0_mm
+            ]
+            (collar,) = behind
+            least = float(retaining_ring("DIN 472", 2.0 * outer).collar_mm)
+            assert collar.z1_mm - collar.z0_mm == pytest.approx(least)
+
+
 def test_the_carrier_turns_freely_in_the_ring_behind_the_bearing():
     for entry in map_for("VT8020").entries:
         parts = {part.name: part for part in entry.actuator.parts} if entry.actuator else {}

@@ -73,6 +73,9 @@ def plausible_robots(designs):
         efficiency_total=0.94 * both,
         torque_constant_n_m_per_a=0.0955 * both,
         winding_resistance_ohm=0.06 * both,
+        cost_eur=np.full(n, 12000.0),
+        made_parts=np.full(n, 70.0),
+        bought_parts=np.full(n, 230.0),
         reason=("",) * n,
         stops=_STOPS,
     )

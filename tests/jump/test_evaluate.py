@@ -53,6 +53,10 @@ def test_every_failure_has_a_name_and_a_reason(evaluator, name):
     assert any(word in result.reason[0] for word in said.split("|"))
     assert np.isnan(result.height_m[0])
     assert np.isnan(result.energy_j[0])
+    # No design that can be built is without a mass and a cost.
+    built = status not in ("bad_input", "no_gearbox")
+    for of_robot in ("mass_kg", "cost_eur", "made_parts", "bought_parts"):
+        assert np.isfinite(result.of(of_robot)[0]) == built, of_robot
 
 
 def test_a_hop_without_work_is_no_jump():

@@ -1,6 +1,7 @@
 """What the page draws and writes, compared with the payload that it was made from."""
 
 import re
+from decimal import ROUND_HALF_UP, Decimal
 from types import SimpleNamespace
 
 import numpy as np
@@ -59,7 +60,9 @@ def shown(mixed):
 
     def text(name, value):
         q = quantities[name]
-        return f"{value * q.scale:.{q.decimals}f} {q.unit}".removesuffix(" 1" if q.unit == "1" else "")
+        # Exact halves go up in a browser, to the even digit in Python.
+        up = Decimal(value * q.scale).quantize(Decimal(1).scaleb(-q.decimals), ROUND_HALF_UP)
+        return f"{up} {q.unit}".removesuffix(" 1" if q.unit == "1" else "")
 
     return text
 

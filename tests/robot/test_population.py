@@ -35,6 +35,9 @@ def assert_same_robot(arrays, i, robot):
         for name in ("peak_torque_n_m", "continuous_torque_n_m", "no_load_speed_rad_per_s", "efficiency"):
             assert getattr(arrays, name)[i, j] == getattr(actuator, name), name
     assert robot.mass_kg == pytest.approx(arrays.body_mass_kg[i].sum(), rel=1e-12)
+    cost = robot.cost
+    assert arrays.cost_eur[i] == pytest.approx(cost.total_eur, rel=1e-12)
+    assert (arrays.made_parts[i], arrays.bought_parts[i]) == (cost.made, cost.bought)
 
 
 @pytest.mark.parametrize("motor", motor_names())

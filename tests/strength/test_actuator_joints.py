@@ -1,6 +1,7 @@
 """Joints of the actuators: capacities by hand from the dimensions of the data, and what all motors must hold."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.strength import drive, mounts
 from pareto_monoped.strength.connections import SHAPE_SAFETY
+from pareto_monoped.strength.factors import TABLE
 from pareto_monoped.strength.joint import Structure
 
 BASE = np.cos(np.radians(20.0))
@@ -33,8 +35,8 @@ def vt8020():
 
 
 def test_spline_and_shaft_by_hand(vt8020):
-    """Module 0.5: 24 teeth in the ISSPG on a shaft of 10 mm, 18 in the ESSPG on 8 mm; coupling of 3 mm, 460 MPa."""
-    for family, teeth, shaft_mm in (("ISSPG", 24, 5.0), ("ESSPG", 18, 4.0)):
+    """Module 0.5: 24 teeth in the ISSPG on a shaft of 9.8 mm, 18 in the ESSPG on 8 mm; coupling of 3 mm, 460 MPa."""
+    for family, teeth, shaft_mm in (("ISSPG", 24, 4.9), ("ESSPG", 18, 4.0)):
         s = vt8020[family]
         pitch = 0.25 * teeth
         base, tip = pitch * BASE, pitch + 0.5
@@ -66,6 +68,44 @@ def test_ring_and_its_housing_by_hand(vt8020):
     given = 3 * 2.5 * 3.0 * 250.0 * 1e-3 * float(pin.pitch_radius_mm)
     assert drive.ring_housing(vt8020["ISSPG"]) == pytest.approx(given)
     assert drive.ring_housing(vt8020["ESSPG"]) == np.inf
+
+
+def test_collars_of_retaining_rings_by_hand(vt8020):
+    """Shaft of 40 with a groove of 37.5: 1.25 deep, collar 0.75, 460 MPa. Bore of 72 in the knee: 75, 1.5, 250 MPa."""
+    bends = 460.0 * np.pi * 37.5 * 0.75**2 / (3.0 * 1.25)
+    assert drive.retaining_rings(vt8020["ISSPG"]) == pytest.approx(bends) == pytest.approx(8129.0, abs=1.0)
+    knee = next(s for s in structures("VT8020") if float(drive.layout_of(s).bore_ring.size_mm) == 72.0)
+    assert drive.retaining_rings(knee) == pytest.approx(250.0 * np.pi * 75.0 * 0.75**2 / (3.0 * 1.5))
+    # 1 mm deep, a collar of 6 mm shears less easily than the groove's wall yields.
+    stout = SimpleNamespace(size_mm=40.0, groove_diameter_mm=38.0, collar_mm=6.0)
+    assert drive.collar_force_n(stout, 100.0) == pytest.approx(100.0 * 0.25 * np.pi * (40.0**2 - 38.0**2))
+    flat = SimpleNamespace(size_mm=40.0, groove_diameter_mm=39.8, collar_mm=0.1)
+    assert drive.collar_force_n(flat, 100.0) == pytest.approx(100.0 * np.pi * 39.8 * 0.1**2 / 0.3)
+    deep = SimpleNamespace(size_mm=40.0, groove_diameter_mm=36.0, collar_mm=4.0)
+    assert drive.collar_force_n(deep, 100.0) == pytest.approx(100.0 * 0.25 * np.pi * (40.0**2 - 36.0**2))
+
+
+def test_a_collar_yields_as_a_strip_that_is_clamped_at_its_root(vt8020):
+    """A strip of the collar 1 mm wide, clamped at the groove's bottom, under an even pressure over its height."""
+    ring = drive.layout_of(vt8020["ISSPG"]).shaft_ring
+    depth, thick, around = 1.25, 0.75, np.pi * 37.5
+    heights = np.linspace(0.0, depth, 2001)
+    force = drive.collar_force_n(ring, 460.0) / around
+    moment = np.trapezoid(force / depth * heights, heights)
+    assert moment * 0.5 * thick / (thick**3 / 12.0) == pytest.approx(460.0, rel=1e-6)
+
+
+def test_the_floor_and_the_chain_push_the_rings_by_their_shares():
+    rows = {joint.name: joint for joint in TABLE if joint.name.endswith("retaining_rings")}
+    assert {name: row.loads for name, row in rows.items()} == {
+        "hip_retaining_rings": ("peak_foot_force_n",),
+        "knee_retaining_rings": ("peak_chain_tension_n",),
+    }
+    s = structures("VT8020")[0]
+    for row, factor in ((rows["hip_retaining_rings"], 4.0), (rows["knee_retaining_rings"], 80.0)):
+        force = row.capacity(s)
+        assert force == drive.retaining_rings(s)
+        assert row.factor(force, 0.25 * force) == pytest.approx(factor)
 
 
 def test_a_dowel_shears_where_the_holes_are_stronger(vt8020):

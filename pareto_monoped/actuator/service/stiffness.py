@@ -112,14 +112,15 @@ def _shaft_compliance(actuator: Actuator, at: Layout, steel: ElasticMaterial) ->
     coupling = [prism for part in actuator.parts if part.role is Role.COUPLING for prism in part.prisms]
     front = max(float(prism.z1_mm) for prism in coupling)
     turning = [part for part in actuator.parts if part.group is Group.ROTOR and part.role is Role.GEAR]
-    radii = [
-        float(prism.outline.radius_mm)
+    between = [
+        (prism, prism.outline)
         for part in turning
         for prism in part.prisms
-        if isinstance(prism.outline, Circle) and prism.z0_mm <= front < prism.z1_mm
+        if front - 1e-9 <= prism.z0_mm and prism.z1_mm <= at.z_gear_back + 1e-9
     ]
-    middle = 0.5 * float(at.z_gear_back + at.z_gear_front)
-    return 1e3 * (middle - front) / (steel.shear_modulus_mpa * 0.5 * np.pi * max(radii) ** 4)
+    radius = max(float(outline.radius_mm) for _, outline in between if isinstance(outline, Circle))
+    teeth = 0.5 * float(at.z_gear_front - at.z_gear_back) / (0.5 * np.pi * radius**4)
+    return 1e3 * (sum(_tube_softness(prism) for prism, _ in between) + teeth) / steel.shear_modulus_mpa
 
 
 def _carrier_compliance(actuator: Actuator, at: Layout, aluminium: ElasticMaterial) -> float:

@@ -63,7 +63,20 @@ STRENGTH = Limit(
 that just holds in a study is not refused for that."""
 SEATS = Limit(name="heads have countersinks and screws have threads", value=0, unit="screws without")
 
+CHAINS = Limit(name="parts assemble and turn at the worst of their limits", value=0.0, unit="mm", at_least=True)
+"""What the tightest dimension chain has over its least gap."""
+
 LOOSE = Limit(name="every part is held", value=0, unit="loose parts")
+
+# What stops a workshop: the dimensions allowed stand in ``making``.
+SLOTS = Limit(name="slots can be cut", value=0, unit="slots too deep")
+WINDOWS = Limit(name="windows can be milled", value=0, unit="windows too narrow")
+WALLS = Limit(name="walls can be made", value=0, unit="walls too thin")
+TAPS = Limit(name="taps run out over whole floors", value=0, unit="holes without room")
+COLLARS = Limit(name="grooves of retaining rings have collars", value=0, unit="collars too thin")
+GAUGES = Limit(name="fits can be gauged", value=0, unit="fits without gauge")
+CENTRES = Limit(name="ground shafts have centres and reliefs", value=0, unit="places without")
+DATUMS = Limit(name="ground shafts have a datum axis", value=0, unit="shafts without")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

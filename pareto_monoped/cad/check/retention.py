@@ -217,9 +217,9 @@ def slabs(placed: Iterable[Instance], *, blunt: bool = True) -> list[Slab]:
 def _sections(part: Part, *, blunt: bool) -> Iterator[tuple[m3.CrossSection, float, float]]:
     """Yield the prisms of a part, a slice of its balls, and discs for its countersunk heads."""
     for prism in part.prisms:
-        section = cross_section([_blunt(prism.outline) if blunt else prism.outline], _TOLERANCE_MM)
+        section = cross_section([toothless(prism.outline) if blunt else prism.outline], _TOLERANCE_MM)
         if prism.holes:
-            section -= cross_section([_blunt(hole) if blunt else hole for hole in prism.holes], _TOLERANCE_MM)
+            section -= cross_section([toothless(hole) if blunt else hole for hole in prism.holes], _TOLERANCE_MM)
         yield section, float(prism.z0_mm), float(prism.z1_mm)
     for ball in part.balls:
         if ball.pocket is not None:
@@ -233,7 +233,7 @@ def _sections(part: Part, *, blunt: bool) -> Iterator[tuple[m3.CrossSection, flo
             yield cross_section([Circle(radius_mm=head.radius_mm)], _TOLERANCE_MM), min(face, out), max(face, out)
 
 
-def _blunt(shape: Shape) -> Shape:
+def toothless(shape: Shape) -> Shape:
     """Return a gear without its teeth: what is surely material, or surely not."""
     if isinstance(shape, ExternalGear | InternalGear):
         return Circle(radius_mm=float(shape.root_radius_mm))

@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 
-from pareto_monoped.cad.check import free_motion, gear_mesh, mass, overlap, retention, screws, watertight
+from pareto_monoped.cad.check import free_motion, gear_mesh, making, mass, overlap, retention, screws, watertight
 from pareto_monoped.cad.check.mass import weigh_bodies, weigh_parts
-from pareto_monoped.cad.check.result import STRENGTH, VALID, Check, Finding, count_of, worst_of
+from pareto_monoped.cad.check.result import CHAINS, STRENGTH, VALID, Check, Finding, count_of, worst_of
 from pareto_monoped.cad.product import Product
+from pareto_monoped.robot.build import Robot
 from pareto_monoped.robot.population import RobotArrays
+from pareto_monoped.robot.tolerances import robot_chains
 from pareto_monoped.strength.factors import JointFactor
 
 
@@ -19,6 +21,17 @@ def check_strength(factors: Sequence[JointFactor]) -> Check:
         bound = f"safety factor = {one.factor:.3g}: must be at least {one.joint.required:g}"
         findings.append(Finding(value=one.share, text=f"{one.joint.name}: {bound}; {one.joint.cure}"))
     return worst_of(STRENGTH, looked_at, findings)
+
+
+def check_chains(robot: Robot) -> Check:
+    """Compare the least gap of every dimension chain with the one that it must keep."""
+    chains = robot_chains(robot)
+    findings = [
+        # Rounded, as many chains end at their least gap exactly.
+        Finding(value=round(chain.worst_mm[0] - chain.least_mm, 6) + 0.0, text=chain.text)
+        for chain in chains
+    ]
+    return worst_of(CHAINS, f"{len(chains)} dimension chains", findings)
 
 
 def check_validity(product: Product) -> Check:
@@ -49,6 +62,8 @@ def run_checks(
         *screws.check_bolts(product),
         screws.check_seats(product),
         retention.check(product.robot),
+        check_chains(product.robot),
+        *making.check(product.unique),
     )
     meshes = watertight.check(product, part_files, other_files)
     parts = weigh_parts(product)

@@ -17,6 +17,7 @@ import numpy as np
 from pareto_monoped.cad.drawing.bores import number
 from pareto_monoped.cad.drawing.dimension import FRAME_MM, datum, frame
 from pareto_monoped.cad.drawing.paper import LETTER_MM, Paper, width_mm
+from pareto_monoped.geometry.chains import deviations
 from pareto_monoped.geometry.gears import DEDENDUM, FILLET, ExternalGear, InternalGear
 from pareto_monoped.geometry.making import (
     GENERAL_SERIES,
@@ -24,13 +25,14 @@ from pareto_monoped.geometry.making import (
     RACEWAY_RA_UM,
     RATED_SERIES,
     Fit,
+    Length,
     ToothMaking,
     limits,
     thickness_tolerance_mm,
 )
 
 _PIN_MODULES = 1.68  # diameter of measuring pins over module, so that they touch near the pitch circle (DIN 3960)
-DATUM = "A"
+DATUM, _SECOND = "A", "B"
 _SEAT_RA, _FIT_RA, _RACEWAY_RA = "0.8", "1.6", f"{RACEWAY_RA_UM:g}"
 """Arithmetical mean height in micrometres: bearing makers ask 0.8 of seats up to 80 mm, and 1.6 suffices elsewhere."""
 _COAXIAL = "Ø0.02"
@@ -135,7 +137,7 @@ def gear_rows(
         ),
         ("Profile shift x, outwards", number(round(float(gear.shift), 4))),
         ("Pitch diameter", number(2.0 * float(gear.pitch_radius_mm))),
-        ("Tip diameter", number(round(2.0 * float(gear.tip_radius_mm), 3))),
+        ("Tip diameter", _tip(gear)),
         ("Form diameter, involute from there", number(round(2.0 * float(gear.form_radius_mm), 3))),
         ("Root diameter", number(round(2.0 * float(gear.root_radius_mm), 3))),
         measured,
@@ -145,6 +147,12 @@ def gear_rows(
         *([("Backlash of the pair, at most", number(round(play + loss, 3)))] if making else ()),
         *(_making_rows(making, hardness) if making is not None else ()),
     ]
+
+
+def _tip(gear: ExternalGear | InternalGear) -> str:
+    """Return the tip diameter with its class and limits: a tip may be lower, but never reach farther into its mate."""
+    diameter, zone = 2.0 * float(gear.tip_radius_mm), "H9" if isinstance(gear, InternalGear) else "h9"
+    return f"{number(round(diameter, 3))} {zone} ({_limits(Fit(diameter_mm=diameter, zone=zone))})"
 
 
 def _making_rows(making: ToothMaking, hardness: str) -> list[tuple[str, str]]:
@@ -192,8 +200,12 @@ def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
         return None
     first = datum_fit(fits)
     located = any(fit is first and fit.seat and single for fit, single in zip(fits, alone, strict=True))
+    # A shaft with two seats turns about the axis of both.
+    seats = [fit for fit, single in zip(fits, alone, strict=True) if single and fit.seat and fit.zone[0].islower()]
+    second = next((fit for fit in seats if fit is not first), None) if first in seats else None
+    axis = DATUM if second is None else f"{DATUM}-{_SECOND}"
     names = [*(f"Ø{fit.text}" for fit in fits), *([_SHOULDERS] if located else [])]
-    widths = [max(width_mm(name, LETTER_MM) for name in names) + 3.0, 30.0, 16.0, 34.0]
+    widths = [max(width_mm(name, LETTER_MM) for name in names) + 3.0, 30.0, 16.0, 34.0 if second is None else 44.0]
     high = FRAME_MM + 2.0
     paper = Paper()
     top = high * (len(names) + 1)
@@ -210,20 +222,34 @@ def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
         finish = _RACEWAY_RA if fit.raceway else _SEAT_RA if fit.seat else _FIT_RA
         paper.text(finish, sum(widths[:2]) + 1.5, y + 0.5 * (high - LETTER_MM))
         x = sum(widths[:3]) + 1.5
-        if fit is first and single:
-            datum(paper, DATUM, x, y + 1.0)
-        elif single:
-            frame(paper, ["coaxial", _COAXIAL, DATUM], x, y + 1.0)
-        else:
+        letter = DATUM if fit is first else _SECOND if fit is second else ""
+        if letter and single:
+            datum(paper, letter, x, y + 1.0)
+            x += FRAME_MM + 1.0
+        if single and axis != letter:
+            frame(paper, ["coaxial", _COAXIAL, axis], x, y + 1.0)
+        elif not single:
             paper.text("see view", x, y + 0.5 * (high - LETTER_MM))
     if located:
-        frame(paper, ["square", _SQUARE, DATUM], sum(widths[:3]) + 1.5, 1.0)
+        frame(paper, ["square", _SQUARE, axis], sum(widths[:3]) + 1.5, 1.0)
     x = 0.0
     for width in (*widths, 0.0):
         paper.line([(x, 0.0), (x, top)])
         x += width
     paper.line([(0.0, top), (sum(widths), top)])
     return paper
+
+
+def length_rows(lengths: Sequence[Length], datum_mm: float) -> list[tuple[str, str]]:
+    """Return a row per length with limits: where its faces are on the running dimensions, and length with limits."""
+    rows = []
+    for one in sorted(lengths, key=lambda one: (abs(float(one.z0_mm) - datum_mm), one.nominal_mm)):
+        near, far = sorted(abs(float(z) - datum_mm) for z in (one.z0_mm, one.z1_mm))
+        off = deviations(float(one.lower_mm), float(one.upper_mm))
+        rows.append(
+            (f"{one.name.capitalize()}, from {number(near)} to {number(far)}", f"{number(one.nominal_mm)} {off}")
+        )
+    return rows
 
 
 def _limits(fit: Fit) -> str:

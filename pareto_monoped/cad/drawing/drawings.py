@@ -16,7 +16,6 @@ from pareto_monoped.cad.drawing.paper import CAPITAL, Fill, Label, Paper, Stroke
 from pareto_monoped.cad.drawing.part_sheet import Sheet, part_sheet
 from pareto_monoped.cad.drawing.sheet import Title, titled
 from pareto_monoped.cad.product import ListedPart, Product
-from pareto_monoped.geometry.making import Fit, ToothMaking
 from pareto_monoped.geometry.parts import Part
 
 _POINTS_PER_MM = 72.0 / 25.4
@@ -147,7 +146,7 @@ def part_drawing(unique: ListedPart, origin: Origin, number: int) -> bytes:
         finish=finish,
         **asdict(origin),
     )
-    return _file([_drawn(part, part.fits, part.teeth, part.accuracy_class, part.note)], title)
+    return _file([_drawn(part, (part.fits, part.lengths, part.teeth, part.accuracy_class, part.note))], title)
 
 
 def assembly_drawing(product: Product, origin: Origin) -> bytes:
@@ -164,12 +163,12 @@ def assembly_drawing(product: Product, origin: Origin) -> bytes:
     return _file([assembly_sheet(product), *exploded_sheets(product), cable_sheet(product)], title)
 
 
-# Designs of one study share most of their parts; a part's note, fits, teeth and accuracy do not count when compared.
 @lru_cache(maxsize=256)
-def _drawn(
-    part: Part, _fits: tuple[Fit, ...], _teeth: tuple[ToothMaking, ...], _accuracy_class: int | None, _note: str
-) -> Sheet:
-    """Return the sheet of a part without its title block."""
+def _drawn(part: Part, _making: tuple[object, ...]) -> Sheet:
+    """Return the sheet of a part without its title block; ``_making`` is what does not count when parts are compared.
+
+    Designs of one study share most of their parts.
+    """
     return part_sheet(part)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from pareto_monoped.cad.drawing.bores import bores, chamfer_text, number
-from pareto_monoped.cad.drawing.data_tables import DATUM, datum_fit, fit_table, gear_rows
+from pareto_monoped.cad.drawing.data_tables import DATUM, datum_fit, fit_table, gear_rows, length_rows
 from pareto_monoped.cad.drawing.end_view import end_view, sees_more_from_above
 from pareto_monoped.cad.drawing.paper import Paper
 from pareto_monoped.cad.drawing.plan import plan_of
@@ -52,7 +52,13 @@ def round_tables(part: Part, drawn: RoundPart) -> list[Paper]:
         tables.append(table(_gear_title(teeth, drawn), ("", ""), rows))
     around = [2.0 * c.radius for c in cylinders(drawn.body)]
     fits = fit_table(part.fits, [any(fit.holds(diameter) for diameter in around) for fit in part.fits])
-    return [*tables, *([fits] if fits is not None else [])]
+    return [*tables, *([fits] if fits is not None else []), *length_tables(part, drawn.datum)]
+
+
+def length_tables(part: Part, datum_mm: float) -> list[Paper]:
+    """Return the table of lengths with limits; none if all have general tolerances."""
+    rows = length_rows(part.lengths, datum_mm)
+    return [table("Lengths with limits", ("", ""), rows)] if rows else []
 
 
 def _making(part: Part, teeth: Teeth) -> ToothMaking | None:
@@ -91,6 +97,7 @@ def part_sheet(part: Part) -> Sheet:
     plan = plan_of(part)
     x0, y0, x1, y1 = plan.bounds
     tables, tags = plan_tables(plan, part)
+    tables = [*tables, *length_tables(part, plan.low)]
     readable = min(_PLAN_MM / max(x1 - x0, y1 - y0), 2.0)
     notes = [*plan_notes(plan, part), *notes]
     return placed((x1 - x0, y1 - y0), readable, lambda scale: plan_views(plan, scale, tags), tables, notes)

@@ -42,6 +42,7 @@ def design_record(
         "as_built": built.design.as_dict(),
         "jumps": {},
         "mass_kg": built.robot.mass_kg,
+        "cost_eur": float(built.robot.cost.total_eur),
         "strength": strength,
         "pose": {"hip_rad": built.pose.hip_rad, "knee_rad": built.pose.knee_rad},
         "actuators": {

@@ -70,7 +70,16 @@ FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
 }
 """Per format: path and purpose of each file, or of each folder of files (path with a slash at its end)."""
 RECORD = "design.json"  #: Name of the file that lists all files of an export; it is written last.
-ALWAYS = ("README.md", "bom.csv", "strength.csv", "parameters.csv", "monoped_equations.txt", "checks.json", RECORD)
+ALWAYS = (
+    "README.md",
+    "bom.csv",
+    "strength.csv",
+    "tolerances.csv",
+    "parameters.csv",
+    "monoped_equations.txt",
+    "checks.json",
+    RECORD,
+)
 """Files of every export."""
 FORMATS = tuple(FILES)  #: All formats, in the order in which they are listed; an export writes all of them by default.
 

@@ -7,6 +7,7 @@ from pareto_monoped.cad.cables import cables
 from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.product import Product, UniquePart
 from pareto_monoped.cad.write.folder import FILES
+from pareto_monoped.robot.cost import Cost
 from pareto_monoped.strength.factors import GearLife, JointFactor
 
 _HOW = {
@@ -27,14 +28,19 @@ def readme(
     life: GearLife | None = None,
 ) -> str:
     """Return the page as Markdown; ``factors`` is empty if the design does not jump."""
-    blocks = (_design(record), _actuators(record), _files(formats), _making(product))
+    blocks = (_design(record, product.robot.cost), _actuators(record), _files(formats), _making(product))
     lines = [line for block in (*blocks, _strength(record, factors, life), _checks(checks)) for line in block]
     return "\n".join(lines) + "\n"
 
 
-def _design(record: Mapping[str, Any]) -> Iterator[str]:
+def _design(record: Mapping[str, Any], cost: Cost) -> Iterator[str]:
     yield from ("# Monoped", "")
     yield from (f"Made by {record['made_by']} with motor {record['motor']}; {record['mass_kg']:.2f} kg.", "")
+    yield (
+        f"Its parts cost about {cost.total_eur:.0f} EUR as a one-off: {cost.hours:.0f} hours of machines, "
+        f"{cost.made:.0f} pieces made and {cost.bought:.0f} bought. Rates are rough; `bom.csv` has each part's cost."
+    )
+    yield ""
     yield from ("| variable | searched | as built |", "|---|---|---|")
     for name, searched in record["searched"].items():
         yield f"| {name} | {searched:.6g} | {record['as_built'][name]:.6g} |"
@@ -69,10 +75,11 @@ def _files(formats: Sequence[str]) -> Iterator[str]:
     yield from ("## Files", "", "| file | for |", "|---|---|")
     for name in formats:
         yield from (f"| `{path}` | {purpose} |" for path, purpose in FILES[name])
-    yield "| `bom.csv` | parts list: count, material, process, mass, size, safety factors |"
+    yield "| `bom.csv` | parts list: count, material, process, mass, size, safety factors, cost |"
     yield "| `parameters.csv` | all dimensions by name: value, unit, part, meaning |"
     yield "| `monoped_equations.txt` | the same as global variables: SolidWorks links a model to this file |"
     yield "| `strength.csv` | safety factor of every joint under the loads of the jump |"
+    yield "| `tolerances.csv` | dimension chains: every gap as drawn, at worst, and within three standard deviations |"
     yield (
         "| `design.json` | the design with its motor and jump model, to make this folder again: "
         "`pareto-monoped export --record design.json -o DIR` |"

@@ -1,4 +1,5 @@
-"""Tables of an export: ``bom.csv`` with the parts, ``strength.csv`` with all safety factors, and ``checks.json``.
+"""Tables of an export: ``bom.csv`` with the parts, ``strength.csv`` with all safety factors, ``tolerances.csv`` with
+all dimension chains, and ``checks.json``.
 
 What is bought: ``hardware.csv``, one row per designation, the torques of screws, and ``cables.csv``.
 """
@@ -16,15 +17,17 @@ from pareto_monoped.cad.cables import TIE, TIE_DESIGNATION, Cable, cables
 from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.product import Listed, Product, part_file_name
 from pareto_monoped.cad.write.folder import csv_text
+from pareto_monoped.geometry.chains import Chain
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import FASTENERS, Role
 from pareto_monoped.geometry.tightening import LOCKER
+from pareto_monoped.robot.cost import part_cost
 from pareto_monoped.strength.factors import JointFactor
 from pareto_monoped.strength.joint import ActuatorJoint
 
 _PART_COLUMNS = (
     *("part", "count", "material", "process", "mass_g", "total_g", "made_or_bought", "size_mm", "used_in"),
-    *("torque_n_m", "lock", "safety_factors", "note"),
+    *("torque_n_m", "lock", "safety_factors", "note", "material_eur", "machine_h", "cost_eur"),
 )
 _JOINT_COLUMNS = (
     *("joint", "group", "actuator", "factor", "required", "factor_over_required", "asked", "loads", "formula"),
@@ -32,13 +35,40 @@ _JOINT_COLUMNS = (
 )
 
 
+_CHAIN_COLUMNS = (
+    *("gap", "as_drawn_mm", "least_mm", "greatest_mm", "least_3_sigma_mm", "greatest_3_sigma_mm", "must_be_mm"),
+    *("lengths", "cure"),
+)
+
+
+def chain_table(chains: Sequence[Chain]) -> str:
+    """Return all dimension chains as CSV: every gap as drawn, at worst and within three standard deviations."""
+    return csv_text(
+        _CHAIN_COLUMNS,
+        [
+            (
+                chain.name,
+                *(f"{value + 0.0:.3f}" for value in (chain.nominal_mm, *chain.worst_mm, *chain.spread_mm)),
+                f"{chain.least_mm:g}",
+                "; ".join(f"{one.sign:+.3g} {one.text}" for one in chain.links),
+                chain.cure,
+            )
+            for chain in chains
+        ],
+    )
+
+
 def parts_list(product: Product, factors: Sequence[JointFactor] = ()) -> str:
-    """Return the parts list as CSV, one row per unique part, with the safety factors of the joints that it is in."""
+    """Return the parts list as CSV, one row per unique part, with the safety factors of the joints that it is in.
+
+    Costs are those of all instances together, and their sum is the robot's.
+    """
     joints = _by_part(factors)
     rows: list[tuple[object, ...]] = []
     for unique in product.unique:
         part = unique.part
         mass_g = 1e3 * float(part.unit_mass_kg())
+        cost = part_cost(part, unique.count)
         rows.append(
             (
                 unique.name,
@@ -54,6 +84,9 @@ def parts_list(product: Product, factors: Sequence[JointFactor] = ()) -> str:
                 part.fastening.lock if part.fastening else "",
                 "; ".join(joints[unique.name]),
                 _note(part),
+                f"{cost.material_eur:.2f}",
+                f"{cost.hours:.2f}",
+                f"{cost.total_eur:.2f}",
             )
         )
     return csv_text(_PART_COLUMNS, rows)

@@ -25,6 +25,15 @@ NAMES = [
     "bolts join parts",
     "heads have countersinks and screws have threads",
     "every part is held",
+    "parts assemble and turn at the worst of their limits",
+    "slots can be cut",
+    "windows can be milled",
+    "walls can be made",
+    "taps run out over whole floors",
+    "grooves of retaining rings have collars",
+    "fits can be gauged",
+    "ground shafts have centres and reliefs",
+    "ground shafts have a datum axis",
 ]
 
 

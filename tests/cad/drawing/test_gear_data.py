@@ -137,7 +137,7 @@ def test_the_table_names_what_a_gear_cutter_needs():
     assert rows["Backlash of the pair, at least"] == "0.08"
     assert rows["Base tangent length W over 4 teeth"] == "5.327 to 5.339"
     assert rows["Basic rack"] == "ISO 53, h 1.25 m, fillet 0.38 m"
-    assert rows["Tip diameter"] == "16"
+    assert rows["Tip diameter"] == "16 h9 (0 / -0.043)"
     assert rows["Root diameter"] == "13.64"  # 15 - 2.5 * 0.5, with the rack 0.055 mm farther in for thinner teeth
 
 

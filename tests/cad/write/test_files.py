@@ -188,6 +188,16 @@ def test_parts_list_sizes_and_units_are_those_of_the_files(exported):
         assert row["used_in"].split() == units
         assert row["made_or_bought"] == ("bought" if row["process"] == "bought" else "made")
         assert float(row["total_g"]) == pytest.approx(int(row["count"]) * float(row["mass_g"]), abs=0.01 * 50)
+        price, hours, cost = (float(row[name]) for name in ("material_eur", "machine_h", "cost_eur"))
+        assert cost >= price > 0.0
+        assert (hours > 0.0) == (cost > price) == (row["made_or_bought"] == "made")
+    # All together they are the record's cost, and what the page says; each is rounded to a cent.
+    total_eur = json.loads((exported.folder / "design.json").read_text())["cost_eur"]
+    assert sum(float(row["cost_eur"]) for row in rows) == pytest.approx(total_eur, abs=0.005 * len(rows))
+    made = sum(int(row["count"]) for row in rows if row["made_or_bought"] == "made")
+    page = (exported.folder / "README.md").read_text()
+    assert f"about {total_eur:.0f} EUR as a one-off: " in page
+    assert f"{made} pieces made and {sum(int(row['count']) for row in rows) - made} bought" in page
     # M3 of 10.9: 1.9 N m (VDI 2230); every screw has a torque and a lock, what is no fastener has neither.
     (screw,) = (row for row in rows if row["part"] == "hip_mount_screw")
     assert (screw["torque_n_m"], screw["lock"]) == ("1.9", "medium-strength thread locker")
