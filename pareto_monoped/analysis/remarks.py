@@ -112,7 +112,25 @@ def warnings(data: StudyData, front: pd.DataFrame) -> list[str]:
     """Return what keeps a study from its result: no feasible design, an early end, or a corner amid the front."""
     if len(data.trials) == 0:
         return []
-    return [*_sweep(data), *_beyond_corner(data, front)] if len(front) else [why_no_front(data)]
+    return [*_sweep(data), *_failures(data), *_beyond_corner(data, front)] if len(front) else [why_no_front(data)]
+
+
+_MANY_FAIL = 0.2
+"""Share of failed jumps that is worth a line; our own choice: the bounds of the paper's cases give 2 to 9 percent."""
+
+
+def _failures(data: StudyData) -> list[str]:
+    """Return a line if many jumps failed, with the most frequent kind of failure."""
+    failed = data.trials[data.trials["state"] == "failed"]
+    share = len(failed) / len(data.trials)
+    if share < _MANY_FAIL:
+        return []
+    # Reasons of one kind differ by their numbers.
+    kinds = failed["reason"].str.replace(r"\d+(\.\d+)?", "...", regex=True)
+    return [
+        f"{len(failed)} of {len(data.trials)} jumps failed ({100.0 * share:.0f} percent), most often because: "
+        f"{kinds.mode().iloc[0]}; narrower bounds would save them"
+    ]
 
 
 def _sweep(data: StudyData) -> list[str]:

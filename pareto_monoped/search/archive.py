@@ -15,6 +15,9 @@ _POSTS = 20
 """Parts of a front. Our own choice: with 40 designs per generation, two for each part."""
 _LEAST_SHARE = 0.01
 """Values that come nearer to 0 have logarithms that rule over all others. Our own choice: two orders of magnitude."""
+_LEAST_EXTENT = 0.1
+"""Of a front's extent over that of all designs. Our own choice: a gain over a front of two designs, counted in an
+extent of almost nothing, would outweigh any violation."""
 _MOST = 12_000
 """Designs that an archive holds at most. Our own choice: half as many again as the main job has, so that the time per
 design stays what it is there, however long a search goes on."""
@@ -95,7 +98,7 @@ class Archive:
         line = np.zeros((0, costs.shape[1]))
         if len(front):
             low = costs[front].min(axis=0)
-            span = costs[front].max(axis=0) - low
+            span = np.maximum(np.ptp(costs[front], axis=0), _LEAST_EXTENT * np.ptp(costs[jumped], axis=0))
             extent = np.where(span > 0.0, span, 1.0)
             scaled = (costs[front] - low) / extent
             posts = _posts(scaled)

@@ -148,3 +148,17 @@ def test_the_study_of_any_motor_has_the_corner_of_its_most_powerful_motors():
     """Its highest jumps were beyond the default of 100 J."""
     corners = {name: load_study(STUDIES / f"{name}.toml").reference_point for name in ("any_motor", "motor_u12")}
     assert corners["any_motor"] == corners["motor_u12"]
+
+
+@pytest.mark.parametrize(("start_height_m", "told"), [(None, True), (0.5, False)])
+def test_a_run_says_when_a_fifth_of_its_jumps_failed(tmp_path, start_height_m, told):
+    """Legs of 0.3 to 0.5 m stand at 0.5 m, but few at 0.3 or 0.7 m."""
+    wide = {"start_height_m": {"lower": 0.3, "upper": 0.7}}
+    variables = wide if told else {"start_height_m": start_height_m}
+    values = {"name": "x", "evaluations": 40, "audit": False, "algorithm": {"name": "random"}, "variables": variables}
+    data = run(study_from_dict(values, source="test"), tmp_path / "x.db").data
+    failed = int((data.trials["state"] == "failed").sum())
+    assert (failed >= 8) is told
+    said = [line for line in remarks(data) if "jumps failed" in line]
+    start = f"{failed} of 40 jumps failed ({100 * failed / 40:.0f} percent), most often because: "
+    assert [line[: len(start)] for line in said] == ([start] if told else [])

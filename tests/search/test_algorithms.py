@@ -261,12 +261,15 @@ def test_with_three_objectives_it_beats_random_search(name):
     )
 
     def missed(algorithm_name):
-        """Volume between the front and the sphere of radius 1, which it cannot pass."""
-        _, history = search(study(algorithm_name, objectives=THREE), 20, problem=dtlz2)
-        feasible = [s.values[s.violation == 0.0] for _, s in history]
-        return 2.5**3 - np.pi / 6.0 - hypervolume(np.vstack(feasible), reference)
+        """Volume between the front and the sphere of radius 1, which it cannot pass; mean of three seeds."""
+        found = []
+        for seed in (1, 2, 3):
+            _, history = search(study(algorithm_name, objectives=THREE, seed=seed), 20, problem=dtlz2)
+            feasible = [s.values[s.violation == 0.0] for _, s in history]
+            found.append(2.5**3 - np.pi / 6.0 - hypervolume(np.vstack(feasible), reference))
+        return np.mean(found)
 
-    assert missed(name) < 0.6 * missed("random")
+    assert missed(name) < 0.67 * missed("random")
 
 
 def test_the_weighted_cost_of_another_pair_is_the_sum_of_shares_of_the_reference_point():

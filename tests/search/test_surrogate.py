@@ -369,8 +369,9 @@ def test_a_tenth_of_each_generation_explores(monkeypatch):
     scaled, asked = features_of(SPACE).scaled(known), features_of(SPACE).scaled(proposed)
     away = np.array([np.sqrt(np.square(scaled - one).sum(axis=1)).min() for one in asked])
     assert len(asked) == 40
-    assert away[-2:].min() > 5.0 * np.median(away[:-4])
-    assert {tuple(row) for row in proposed[-4:-2]} <= {tuple(row) for row in ended[-1]}
+    # The last eight are plain evolution.
+    assert away[-10:-8].min() > 5.0 * np.median(away[:-12])
+    assert {tuple(row) for row in proposed[-12:-10]} <= {tuple(row) for row in ended[-1]}
     # Nothing can be exchanged in this space: six climbs begin anywhere, four on the front, and three close to it.
     simulated = [tuple(row) in {tuple(design) for design in known} for row in began[-1]]
     assert len(simulated) == 13
@@ -427,7 +428,7 @@ def test_a_part_of_the_front_far_from_the_rest_in_the_space_is_found():
 
 @pytest.mark.parametrize("limit", [-1.0, 5.5])
 def test_it_simulates_what_a_sweep_of_the_truth_would_choose(limit):
-    """After 300 designs nearly all it asks for is on, or within a percent of, the front of 20,000 spread designs."""
+    """After 300 designs nearly all that the model chooses is within a percent of the front of 20,000 spread designs."""
     algorithm = SurrogateSearch(SPACE, SETTINGS, 1)
     for _ in range(15):
         values = algorithm.ask().values
@@ -437,7 +438,8 @@ def test_it_simulates_what_a_sweep_of_the_truth_would_choose(limit):
     truth = Archive(SPACE)
     truth.add(many, found)
     standing = truth.standing()
-    asked = scored(algorithm.ask().values, limit=limit)
+    # A fifth, the last ones, is plain evolution.
+    asked = scored(algorithm.ask().values[:-4], limit=limit)
     costs = np.column_stack((-np.log(asked.values[:, 0]), np.log(asked.values[:, 1])))
     behind = shortfall(standing.scaled(costs), standing.line)
     assert (asked.violation == 0.0).mean() > 0.9
