@@ -36,7 +36,7 @@ def main(count: int) -> None:
     print(f"{count} random designs; median / 90th percentile / worst; inf: a jump was lost")
     print("| calibration | jump | 1e-6: height mm | energy % | half step: height mm | energy % |")
     print("|---|---|---|---|---|---|")
-    for name in ("reference", "reference-1", "ideal", "paper"):
+    for name in ("reference", "reference-1", "ideal", "stand", "paper"):
         calibration = load_calibration(name)
         print(f"| {name} | {' | '.join(_conditioning(designs, calibration))} |")
 

@@ -59,9 +59,10 @@ def robust(
     """
     if samples < LEAST_SAMPLES:
         raise InputError(complaint("samples", samples, f"a power of two of at least {LEAST_SAMPLES}", "give more"))
-    drawn = sobol_samples(uncertainty, samples, seed)
     with storage_of(db).locked():
         data = read_study(db)
+        uncertainty = uncertainty.where(stand=data.calibration.stand is not None)
+        drawn = sobol_samples(uncertainty, samples, seed)
         rows = _chosen(data, trials)
         settings = {"uncertainty": uncertainty.as_dict(), "samples": samples, "seed": seed}
         known = {trial: stored.result for trial, stored in read_robustness(db).items() if stored.settings == settings}

@@ -71,6 +71,7 @@ def sensitivity(
         row = data.trials[(data.trials["trial"] == trial) & (data.trials["status"] == "ok")]
         if len(row) == 0:
             raise SelectionError(f"trial = {trial}: must be a trial of the study that jumped; give another number")
+        ranges = ranges.where(stand=data.calibration.stand is not None)
         plain = {"samples": blocks, "seed": seed}
         wanted: dict[About, dict[str, object]] = {
             "variables": {**plain, "within": within},

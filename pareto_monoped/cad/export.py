@@ -32,9 +32,11 @@ from pareto_monoped.cad.write.readme import readme
 from pareto_monoped.cad.write.tables import chain_table, checks_record, parts_list, strength_table
 from pareto_monoped.design import LENGTHS, Design
 from pareto_monoped.errors import CheckError
-from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.calibration import Calibration, on_stand
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
+from pareto_monoped.jump.model import rail_friction_n
 from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.leg.stand import stand_mass_kg
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.robot.tolerances import robot_chains
 from pareto_monoped.strength.factors import GearLife, gear_life, joint_factors
@@ -152,7 +154,7 @@ def export_design(
         loads = _loads(built.design, results, list(designs).index("as_built"))
         factors = joint_factors(built.design, maps, loads)
         life = gear_life(built.design, maps, loads)
-        record["jumps"] = _jumps(designs, results)
+        record["jumps"] = _jumps(designs, results) | _jump_on_stand(built.design, maps, calibration)
         progress("checking")
         shown = visuals(product) if {"mjcf", "urdf"} & set(wanted) else ()
         part_files, other_files = files.part_meshes(product), files.other_meshes(product, shown, wanted)
@@ -217,8 +219,19 @@ def _require_passed(checks: Sequence[Check], out_dir: Path) -> None:
 
 
 def simulated_jumps(designs: Mapping[str, Design], maps: Maps, calibration: Calibration) -> dict[str, dict[str, Any]]:
-    """Return status, reason and some measures of some designs' jumps, by the designs' names, as JSON values."""
-    return _jumps(designs, _evaluated(designs, maps, calibration))
+    """Return status, reason and some measures of some designs' jumps, by the designs' names, as JSON values.
+
+    The design ``as_built`` jumps on the test stand as well.
+    """
+    jumps = _jumps(designs, _evaluated(designs, maps, calibration))
+    return jumps | _jump_on_stand(designs["as_built"], maps, calibration)
+
+
+def _jump_on_stand(design: Design, maps: Maps, calibration: Calibration) -> dict[str, dict[str, Any]]:
+    known, designs = on_stand(calibration), {"stand": design}
+    (jump,) = _jumps(designs, _evaluated(designs, maps, known)).values()
+    held = {"mass_kg": stand_mass_kg(leg_dimensions(maps)), "rail_friction_n": rail_friction_n(known)}
+    return {"stand": jump | held}
 
 
 def _evaluated(designs: Mapping[str, Design], maps: Maps, calibration: Calibration) -> Evaluations:

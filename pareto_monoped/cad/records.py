@@ -89,8 +89,8 @@ def _is_whole(folder: Path, record: dict[str, Any]) -> bool:
     """Return whether all listed files are there, and the list has what the record's formats make."""
     names = [str(name) for name in record["files"]]
     needed = [*ALWAYS, *(path for name in record["formats"] for path, _ in FILES[name])]
-    if record["jumps"]["as_built"]["status"] == "cannot_stand":
-        needed = [path for path in needed if path != "model/monoped.xml"]
+    if "cannot_stand" in (record["jumps"][name]["status"] for name in ("as_built", "stand")):
+        needed = [path for path in needed if path not in dict(FILES["mjcf"])]
     listed = all(any(name == path or (path[-1] == "/" and name.startswith(path)) for name in names) for path in needed)
     return listed and all((folder / name).is_file() and (folder / name).stat().st_size > 0 for name in names)
 

@@ -1,7 +1,7 @@
-"""Makes the jump of this folder again, with MuJoCo and NumPy alone. Run it with: python replay.py.
+"""Makes a jump of this folder again, with MuJoCo and NumPy alone. Run: python replay.py, or python replay.py stand.
 
-Reads ``monoped.xml`` (the robot) and ``jump.json`` (everything else), prints height and energy, and says whether they
-are those of the export. Units are SI; pairs are hip, knee. The equations stand in the project's docs/model.md.
+Reads ``monoped.xml`` (the robot) and ``jump.json`` (everything else), or both with ``_stand``: the jump on a stand.
+Prints height and energy, and if they are the export's. Units are SI; pairs are hip, knee. Equations: docs/model.md.
 """
 
 import json
@@ -45,10 +45,10 @@ def delivered(jump: dict, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
     return np.where((loss == 0.0) | (torque == 0.0), torque, np.clip(after, -limit, limit))
 
 
-def replay(folder: Path) -> tuple[float, float, float]:
-    """Height in m, mechanical energy and energy from the battery in J of the jump in ``folder``."""
-    jump = json.loads((folder / "jump.json").read_text())
-    model = mujoco.MjModel.from_xml_path(str(folder / "monoped.xml"))
+def replay(folder: Path, place: str = "") -> tuple[float, float, float]:
+    """Height in m, mechanical energy and energy from the battery in J of the jump in ``folder``; place: "_stand"."""
+    jump = json.loads((folder / f"jump{place}.json").read_text())
+    model = mujoco.MjModel.from_xml_path(str(folder / f"monoped{place}.xml"))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.keyframe("start").id)
     z, hip, knee = (int(model.joint(name).qposadr[0]) for name in ("slide_z", "hip", "knee"))
@@ -110,9 +110,9 @@ def replay(folder: Path) -> tuple[float, float, float]:
 
 
 if __name__ == "__main__":
-    here = Path(__file__).resolve().parent
-    found = replay(here)
-    expected = json.loads((here / "jump.json").read_text())["expected"]
+    here, place = Path(__file__).resolve().parent, "_stand" if sys.argv[1:] == ["stand"] else ""
+    found = replay(here, place)
+    expected = json.loads((here / f"jump{place}.json").read_text())["expected"]
     same = True
     for name, value in zip(("height_m", "energy_j", "electrical_energy_j"), found, strict=True):
         same = same and abs(value - expected[name]) <= 1e-9 * max(1.0, abs(expected[name]))

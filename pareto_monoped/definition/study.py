@@ -40,7 +40,7 @@ from pareto_monoped.definition.variables import (
 )
 from pareto_monoped.design import DEFAULTS, NAMES, RuleSet
 from pareto_monoped.errors import StudyError, complaint
-from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION, rules_for, strength_for
+from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION, is_stand, rules_for, strength_for
 from pareto_monoped.measures import SHARE_MEASURES, is_own, is_robust
 from pareto_monoped.pareto.objectives import Objectives, ReferencePoint
 from pareto_monoped.strength.groups import GROUP_MEASURES
@@ -286,7 +286,7 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
         objectives=objectives,
         constraints=constraints,
         reference_point=corner,
-        uncertainty=None if table is None else sampling_of(table, source=source),
+        uncertainty=None if table is None else sampling_of(table, source=source, stand=is_stand(file.calibration)),
         algorithm=algorithm_of(file, corner, source),
         shared_iterations=False,
     )

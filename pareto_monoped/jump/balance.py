@@ -37,6 +37,7 @@ class EnergyBalance:
     #: damping_j, friction_j: lost to viscous and Coulomb friction of the joints
     damping_j: float
     friction_j: float
+    rails_j: float  #: lost to the friction of a stand's carriages
     stops_absorbed_j: float  #: lost in the end stops
     stops_stored_j: float  #: what their bumpers still hold
     contact_j: float  #: lost at the foot, in its rubber and by slip
@@ -54,7 +55,7 @@ class EnergyBalance:
         """The joints' work that the other terms do not explain."""
         moving = self.bodies_kinetic_j + self.rotors_kinetic_j + self.potential_j
         stops = self.stops_absorbed_j + self.stops_stored_j
-        lost = self.damping_j + self.friction_j + self.contact_j + self.integration_j
+        lost = self.damping_j + self.friction_j + self.rails_j + self.contact_j + self.integration_j
         return self.joint_work_j - moving - stops - lost
 
     @property
@@ -70,7 +71,7 @@ def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibratio
     inertia this is exactly the change of kinetic energy that the force causes in MuJoCo's semi-implicit step. In a
     Runge-Kutta step only the actuators' force is constant; the others count with the mean of their values at both ends.
     """
-    work = dict.fromkeys(("motor", "joint", "damping", "friction", "stops", "contact", "integration"), 0.0)
+    work = dict.fromkeys(("motor", "joint", "damping", "friction", "rails", "stops", "contact", "integration"), 0.0)
     mesh, chain = np.zeros(2), np.zeros(2)
     mesh_share = _mesh_share(robots, calibration)
     first: Moment | None = None
@@ -88,7 +89,8 @@ def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibratio
         mean = 0.5 * (before + moved) if calibration.simulation.integrator == "RK4" else moved
         friction, stops, contact = constraint_forces(moment.data)
         work["damping"] += float((moment.model.dof_damping * _damped(moment, calibration)) @ mean)
-        work["friction"] -= float(friction @ mean)
+        work["friction"] -= float(friction[HIP:] @ mean[HIP:])
+        work["rails"] -= float(friction[:HIP] @ mean[:HIP])
         work["stops"] -= float(stops @ mean)
         work["contact"] -= float(contact @ mean)
         work["integration"] += _integration_loss_j(moment, calibration, moved)
@@ -104,6 +106,7 @@ def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibratio
         potential_j=float(potential),
         damping_j=work["damping"],
         friction_j=work["friction"],
+        rails_j=work["rails"],
         stops_absorbed_j=work["stops"] - float(stored),
         stops_stored_j=float(stored),
         contact_j=work["contact"],

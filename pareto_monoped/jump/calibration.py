@@ -1,13 +1,14 @@
 """Calibrations: named, versioned records of everything that a jump depends on besides the robot.
 
 Shipped in ``data/calibrations`` are ``reference``, well-posed and the default; ``paper``, the paper's simulation with
-readings, fitted to its Table I; and ``ideal``, which is ``reference`` without losses.
+readings, fitted to its Table I; ``ideal``, which is ``reference`` without losses; and ``stand``, which is ``reference``
+on the rails of the test stand.
 """
 
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -17,7 +18,7 @@ from pydantic import Field
 
 from pareto_monoped.config import NotNegative, Positive, Strict, checked, read_toml
 from pareto_monoped.errors import CalibrationError, InputError, unknown_name
-from pareto_monoped.jump.calibration_defaults import DEFAULT
+from pareto_monoped.jump.calibration_defaults import DEFAULT, STAND
 from pareto_monoped.jump.controller_record import MOST_DELAY
 from pareto_monoped.robot.population import MassOptions
 
@@ -216,6 +217,13 @@ class Simulation(Strict):
         return round(self.period_s / self.timestep_s)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stand(Strict):
+    """The test stand, whose arms and carriages the base lifts as well: their mass is that of ``leg.stand``."""
+
+    rail_friction_n: NotNegative  #: Coulomb friction of each carriage on its rail
+
+
 def _whole(number: float) -> bool:
     """Return whether a number is whole but for rounding."""
     return math.isfinite(number) and abs(number - round(number)) < 1e-6
@@ -244,9 +252,12 @@ class Calibration(Strict):
     gate: Annotated[ContactGate | FadeGate, Field(discriminator="rule")]
     controller: Controller
     simulation: Simulation
+    stand: Stand | None = None  #: None: nothing hangs on the base, and what guides it has no friction
 
     def __post_init__(self) -> None:
-        """Refuse torques in flight with a gate that ends them."""
+        """Refuse torques in flight with a gate that ends them, and a stand on which the base slides away."""
+        if self.stand is not None and self.simulation.base_slides:
+            raise ValueError("simulation.base_slides must be false with a table stand, whose rails hold it; correct it")
         if self.controller.flight is not None and not isinstance(self.gate, ContactGate):
             raise ValueError(f"gate.rule {self.gate.rule!r} must be 'contact' if controller.flight is set; drop one")
 
@@ -267,7 +278,7 @@ _LATER = {
 def calibration_values(calibration: Calibration) -> dict[str, Any]:
     """Return every value of a calibration as JSON has it, for ``calibration_of``.
 
-    Fields in ``_LATER`` are left out at their defaults, so that studies stored before keep their hash.
+    Fields in ``_LATER``, and ``stand``, are left out at their defaults, so that studies stored before keep their hash.
     """
     values: dict[str, Any] = json.loads(json.dumps(asdict(calibration)))
     for table, names in _LATER.items():
@@ -275,7 +286,17 @@ def calibration_values(calibration: Calibration) -> dict[str, Any]:
         values[table] = {
             name: value for name, value in values[table].items() if name not in names or value != defaults[name]
         }
+    if calibration.stand is None:
+        del values["stand"]
     return values
+
+
+def on_stand(calibration: Calibration) -> Calibration:
+    """Return a calibration with the base on the shipped stand, if it is on none, and all else as it is."""
+    if calibration.stand is not None:
+        return calibration
+    guided = replace(calibration.simulation, base_slides=False)
+    return replace(calibration, simulation=guided, stand=load_calibration(STAND).stand)
 
 
 def calibration_names() -> tuple[str, ...]:

@@ -6,6 +6,7 @@ from pareto_monoped.design import DEFAULT_RULES, RuleSet
 from pareto_monoped.errors import CalibrationError, InputError, complaint
 
 DEFAULT = "reference"
+STAND = "stand"  #: The calibration whose robot jumps on the rails of the test stand.
 _PAPER = "paper"
 OWN_CALIBRATION = "own:"  #: How the name of a calibration begins whose values stand only in the study's database.
 
@@ -31,6 +32,14 @@ def strength_for(calibration: str) -> bool:
     return not _is_paper(calibration)
 
 
+def is_stand(calibration: str) -> bool:
+    """Return whether a name is that of the calibration ``stand``, with or without a version."""
+    return _is(STAND, calibration)
+
+
 def _is_paper(calibration: str) -> bool:
-    """Return whether a name is that of the calibration ``paper``, with or without a version."""
-    return re.fullmatch(rf"{_PAPER}(-\d+)?", calibration) is not None
+    return _is(_PAPER, calibration)
+
+
+def _is(name: str, calibration: str) -> bool:
+    return re.fullmatch(rf"{name}(-\d+)?", calibration) is not None

@@ -324,7 +324,8 @@ def _loads(v: Floats, jump: Any) -> None:
     The floor's force accelerates the whole robot. An end stop takes the moment about its joint of all that hangs below
     it, less the torques of actuator, floor and viscous friction; Coulomb friction is counted with the stop. A gearbox
     transmits the motor's torque less what accelerates the rotor; the chain transmits the knee's torque less what
-    accelerates everything before its sprocket. On a vertical guide the floor's force in x is unknown and left out.
+    accelerates everything before its sprocket. On a vertical guide the floor's force in x accelerates nothing. On a
+    stand it is what a joint that is off its stops needs besides its actuator; without a stand it is left out.
     """
     nv, timestep = v.shape[0], jump.timestep_s
     hip, knee = (jump.directions[0], jump.directions[1]), (jump.directions[2], jump.directions[3])
@@ -341,21 +342,30 @@ def _loads(v: Floats, jump: Any) -> None:
     at_knee = _accelerated((ax, az), to_knee, turn, spin_up)
     at_thigh = _accelerated((ax, az), thigh, turn, spin_up)
     at_shank = _accelerated(at_knee, shank, turn_below, below_spin_up)
-    mass, thigh_mass, shank_mass = jump.body_mass_kg[0], jump.body_mass_kg[1], jump.body_mass_kg[2]
+    mass, thigh_mass, shank_mass = jump.body_mass_kg[0] + jump.stand_mass_kg, jump.body_mass_kg[1], jump.body_mass_kg[2]
     floor = (0.0, 0.0)
     if jump.position[1] + to_knee[1] + to_floor[1] - jump.foot_radius_m <= 0.0:
         fx = mass * ax + thigh_mass * at_thigh[0] + shank_mass * at_shank[0]
-        floor = (fx if nv == 4 else 0.0, mass * az + thigh_mass * at_thigh[1] + shank_mass * at_shank[1])
-    jump.peak_foot_force_n = max(jump.peak_foot_force_n, math.sqrt(floor[0] * floor[0] + floor[1] * floor[1]))
+        rails = math.copysign(jump.rail_friction_n, jump.velocity[1] + v[nv - 3])
+        fz = mass * az + thigh_mass * at_thigh[1] + shank_mass * at_shank[1] + rails
+        floor = (fx if nv == 4 else 0.0, fz)
 
     at_sole = (to_floor[0], to_floor[1] - jump.foot_radius_m)
     below = jump.link_inertia_kg_m2[1] * below_spin_up + shank_mass * _moment(shank, at_shank) - _moment(at_sole, floor)
     whole = below + jump.link_inertia_kg_m2[0] * spin_up + thigh_mass * _moment(thigh, at_thigh)
     pull = (shank_mass * at_shank[0] - floor[0], shank_mass * at_shank[1] - floor[1])
-    jump.peak_knee_force_n = max(jump.peak_knee_force_n, math.sqrt(pull[0] * pull[0] + pull[1] * pull[1]))
     whole += _moment(to_knee, pull) + jump.coupling_kg_m2 * knee_spin_up
     turning = jump.armature_kg_m2[KNEE] * knee_spin_up + jump.coupling_kg_m2 * spin_up
     needed = (whole + jump.armature_kg_m2[HIP] * spin_up, below + turning)
+    if jump.stand_mass_kg > 0.0 and floor[1] != 0.0:
+        free = HIP if jump.lower_stop_rad[HIP] <= jump.position[2] <= jump.upper_stop_rad[HIP] else KNEE
+        arms = (at_sole[1] + to_knee[1], at_sole[1])
+        unmet = needed[free] - jump.joint_torque_n_m[free] + jump.joint_damping_n_m_s_per_rad[free] * v[nv - 2 + free]
+        fx = unmet / arms[free]
+        floor, pull = (fx, floor[1]), (pull[0] - fx, pull[1])
+        needed = (needed[HIP] - arms[HIP] * fx, needed[KNEE] - arms[KNEE] * fx)
+    jump.peak_foot_force_n = max(jump.peak_foot_force_n, math.sqrt(floor[0] * floor[0] + floor[1] * floor[1]))
+    jump.peak_knee_force_n = max(jump.peak_knee_force_n, math.sqrt(pull[0] * pull[0] + pull[1] * pull[1]))
 
     riding = spin_up if jump.coupling_kg_m2 > 0.0 else 0.0
     for joint in range(2):

@@ -46,6 +46,7 @@ RECORD = np.dtype(
         ("start_rad", _BOTH),
         # What the loads are computed from, see ``_loads``.
         ("body_mass_kg", (np.float64, (3,))),
+        *_each(_ONE, "stand_mass_kg", "rail_friction_n"),  # what the base lifts besides the robot; of all carriages
         ("thigh_com_m", _BOTH),  # x, z
         ("shank_com_m", _BOTH),
         ("link_inertia_kg_m2", _BOTH),  # of thigh and shank about y, through their centres of mass

@@ -105,8 +105,9 @@ def _course(population: Population) -> Floats:
             course[ids, step, 8] = now.clearance_m(position, directions) <= 0.0
             risen = now.momentum_kg_m_per_s(velocity, directions)
             if step:
-                # What changes the upward momentum is the floor's force against the weight.
-                course[ids, step - 1, 8] *= (risen - momentum[ids]) / now.step_s + weight_n[ids]
+                # What changes the upward momentum is the floor's force against the weight and the friction of rails.
+                rails_n = np.copysign(records["rail_friction_n"][ids], velocity[:, 1])
+                course[ids, step - 1, 8] *= (risen - momentum[ids]) / now.step_s + weight_n[ids] + rails_n
             momentum[ids] = risen
             step += 1
     return course[:, :step]
@@ -128,7 +129,9 @@ class _Bodies:
     def of(cls, records: Records) -> "_Bodies":
         names = ("thigh_com_m", "shank_com_m", "thigh_length_m", "shank_length_m", "foot_radius_m")
         given = {name: records[name].copy() for name in names}
-        return cls(step_s=records["timestep_s"].copy(), mass_kg=records["body_mass_kg"].copy(), **given)
+        mass_kg = records["body_mass_kg"].copy()
+        mass_kg[:, 0] += records["stand_mass_kg"]
+        return cls(step_s=records["timestep_s"].copy(), mass_kg=mass_kg, **given)
 
     def clearance_m(self, position: Floats, directions: Floats) -> Floats:
         """Return the gap between foot and floor."""

@@ -2,6 +2,7 @@
 
 World frame: x forward, z up, floor at z = 0. The joints turn about +y. At zero both links hang straight down; a
 negative hip angle swings the thigh forward, and a positive knee angle is flexion. The base slides and does not pitch.
+On a stand it slides on vertical rails only, and its mass includes what holds it there.
 """
 
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from pareto_monoped.design import GRAVITY_M_PER_S2, Floats
 from pareto_monoped.jump.calibration import Calibration, Drive, Joints, SpringContact
 from pareto_monoped.jump.end_stops import EndStops, end_stops
+from pareto_monoped.leg.stand import CARRIAGES
 from pareto_monoped.robot.population import RobotArrays
 from pareto_monoped.robot.units import JOINTS
 
@@ -43,7 +45,8 @@ def start_pose(robots: RobotArrays, calibration: Calibration) -> StartPose:
     radius = robots.foot_radius_m
     sunk = np.zeros(len(robots))
     if isinstance(calibration.contact, SpringContact):
-        sunk = compression_m(calibration.contact, robots.body_mass_kg.sum(axis=1) * GRAVITY_M_PER_S2)
+        moved_kg = robots.body_mass_kg.sum(axis=1) + stand_mass_kg(robots, calibration)
+        sunk = compression_m(calibration.contact, moved_kg * GRAVITY_M_PER_S2)
     length = robots.start_height_m - radius + sunk
     thigh, shank = robots.thigh_length_m, robots.shank_length_m
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -139,6 +142,7 @@ def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Flo
     n, slides = len(robots), calibration.simulation.base_slides
     mass, com, inertia = (np.zeros((n, 4, *tail)) for tail in ((), (3,), (3,)))
     mass[:, 1:] = robots.body_mass_kg
+    mass[:, BASE] += stand_mass_kg(robots, calibration)
     com[:, 1:] = robots.body_com_m
     # All rotation is about y, so only the yy moment acts; products of inertia would load guides that are not modelled.
     inertia[:, 1:] = np.diagonal(robots.body_inertia_kg_m2, axis1=-2, axis2=-1)
@@ -177,6 +181,16 @@ def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Flo
         "actuator_ctrlrange": np.stack([-limit, limit], axis=-1),
         **rotor,
     }
+
+
+def stand_mass_kg(robots: RobotArrays, calibration: Calibration) -> Floats:
+    """Return what the base lifts besides the robot, shape (n,); 0 without a stand."""
+    return np.zeros(len(robots)) if calibration.stand is None else robots.stand_mass_kg
+
+
+def rail_friction_n(calibration: Calibration) -> float:
+    """Return the Coulomb friction of all carriages on their rails; 0 without a stand."""
+    return 0.0 if calibration.stand is None else CARRIAGES * calibration.stand.rail_friction_n
 
 
 def joint_damping(robots: RobotArrays, joints: Joints) -> Floats:
@@ -277,6 +291,7 @@ def _document(
             f' diaginertia="{_n(*fields["body_inertia"][body])}"/>'
         )
 
+    rails = f' frictionloss="{_n(friction_n)}"' if (friction_n := rail_friction_n(calibration)) else ""
     slide_x = '\n      <joint name="slide_x" type="slide" axis="1 0 0"/>' if simulation.base_slides else ""
     foot = _n(*fields["site_pos"][0])
     tendon = ""
@@ -299,7 +314,7 @@ impratio="{_n(slip_ratio)}" gravity="0 0 {_n(-GRAVITY_M_PER_S2)}" solver="Newton
     <light pos="0 -2 3" dir="0 0.5 -1"/>
     <geom name="floor" type="plane" size="0 0 1"/>
     <body name="base">{slide_x}
-      <joint name="slide_z" type="slide" axis="0 0 1"/>
+      <joint name="slide_z" type="slide" axis="0 0 1"{rails}/>
       {inertial(BASE)}
       <body name="thigh">
         {hinge(0, "hip")}

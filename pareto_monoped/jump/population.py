@@ -201,6 +201,8 @@ def _set_load_constants(records: Records, robots: RobotArrays, calibration: Cali
     """What ``controller`` computes the loads from: bodies, everything that turns, friction, and stops."""
     joints = calibration.joints
     records["body_mass_kg"] = robots.body_mass_kg
+    records["stand_mass_kg"] = model.stand_mass_kg(robots, calibration)
+    records["rail_friction_n"] = model.rail_friction_n(calibration)
     for name, body in (("thigh_com_m", "thigh"), ("shank_com_m", "shank")):
         records[name] = robots.body_com_m[:, BODIES.index(body)][:, [0, 2]]
     records["link_inertia_kg_m2"] = robots.body_inertia_kg_m2[:, 1:, 1, 1]

@@ -14,7 +14,7 @@ from pareto_monoped.actuator.ratiomap import Maps
 from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, Design, Floats, columns
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluator
-from pareto_monoped.jump.model import mjcf
+from pareto_monoped.jump.model import mjcf, stand_mass_kg
 from pareto_monoped.jump.quiet import quiet
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
@@ -126,7 +126,8 @@ def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
     import mujoco
 
     rows = []
-    weight_n = float(robots.body_mass_kg[0].sum()) * GRAVITY_M_PER_S2
+    moved_kg = robots.body_mass_kg[0].sum() + stand_mass_kg(robots, calibration)[0]
+    weight_n = float(moved_kg) * GRAVITY_M_PER_S2
     radius = float(robots.foot_radius_m[0])
     for index, moment in enumerate(moments(robots, control, calibration)):
         data, q, v = moment.data, moment.qpos, moment.qvel
@@ -145,7 +146,7 @@ def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
 
 
 def constraint_forces(data: Any) -> tuple[Floats, Floats, Floats]:
-    """Return the generalised forces of joint friction, end stops and contacts, each of shape (nv,).
+    """Return the generalised forces of friction in joints and rails, end stops and contacts, each of shape (nv,).
 
     The slide entries of the contacts' are the floor's force on the foot.
     """

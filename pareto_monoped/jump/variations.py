@@ -37,6 +37,9 @@ class Variations:
     link_lengths_m: Floats  #: added to thigh and shank, shape (n, 2)
     gains: Floats  #: factors on K, C and T, shape (n, 3)
     delays_s: Floats  #: added to the delay of the calibration, in which they count as whole control periods, shape (n,)
+    #: stand_mass, rail_friction: factors on what the base lifts on a stand and on the friction of its rails, shape (n,)
+    stand_mass: Floats
+    rail_friction: Floats
 
     def __len__(self) -> int:
         return len(self.masses)
@@ -52,6 +55,7 @@ def varied_robots(robots: RobotArrays, variations: Variations) -> RobotArrays:
         no_load_speed_rad_per_s=robots.no_load_speed_rad_per_s * variations.no_load_speeds[:, None],
         thigh_length_m=robots.thigh_length_m + variations.link_lengths_m[:, 0],
         shank_length_m=robots.shank_length_m + variations.link_lengths_m[:, 1],
+        stand_mass_kg=robots.stand_mass_kg * variations.stand_mass,
     )
 
 
@@ -71,6 +75,7 @@ def vary_records(records: Any, calibration: Calibration, variations: Variations)
     else:
         records["weight_n"] *= known[:, BODIES.index("base")] / true[:, BODIES.index("base")]
     records["joint_damping_n_m_s_per_rad"] *= variations.damping[:, None]
+    records["rail_friction_n"] *= variations.rail_friction
     records["delay_periods"] += np.round(variations.delays_s / calibration.simulation.period_s)
 
 
@@ -81,6 +86,7 @@ def vary_fields(batch: Any, foot_geom: int, variations: Variations) -> None:
     """
     batch.expand("dof_damping")[:, -2:] *= variations.damping[:, None]
     batch.expand("dof_frictionloss")[:, -2:] *= variations.friction[:, None]
+    batch.expand("dof_frictionloss")[:, -3] *= variations.rail_friction
     foot, stops = batch.expand("geom_solref")[:, foot_geom, 0], batch.expand("jnt_solref")[:, -2:, 0]
     foot *= np.where(foot < 0.0, variations.foot_stiffness, 1.0)
     stops *= np.where(stops < 0.0, variations.stop_stiffness[:, None], 1.0)

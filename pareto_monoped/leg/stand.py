@@ -2,13 +2,16 @@
 
 The jump model holds the base upright. On a test stand two rails do that, one beside either cheek, behind the robot. An
 arm lies on the outside of each cheek, under the screws of three rods, and carries two carriages one above the other.
-The arms are tools: they are no part of the robot, of its mass or of its checks.
+The arms are tools: they are no part of the robot, of its mass or of its checks. A calibration with a table ``stand``
+lets the robot jump on the rails, with what it has to lift there.
 
 The hip's torque wants to turn the base about the joint's axis. Friction under the rods' screws takes it from the
 cheeks, and each arm passes it to its carriages as a couple of sideways forces.
 """
 
+import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 from pareto_monoped.geometry.parts import Part, layer, sheet_part
 from pareto_monoped.geometry.roles import Role
@@ -18,6 +21,7 @@ from pareto_monoped.leg.base import ROD_THREAD
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.leg.electronics import DRIVER_PLATE_MM
 from pareto_monoped.leg.sandwich import holes_at, rounded_hull
+from pareto_monoped.materials import MATERIALS
 
 ARM_MM = 5.0
 """Thickness of an arm; our own choice: M3 x 8 reach 3 mm into a carriage."""
@@ -33,10 +37,20 @@ class Carriage:
     hole_length_mm: float  #: between its four threads, along the rail
     hole_width_mm: float  #: across the rail
     thread_mm: float  #: depth of these M3 threads
+    mass_kg: float
 
 
-MGN12H = Carriage(name="MGN12H", length_mm=45.4, width_mm=27.0, hole_length_mm=20.0, hole_width_mm=20.0, thread_mm=3.5)
-"""HIWIN, miniature guideways, series MGN: long carriage of size 12."""
+MGN12H = Carriage(
+    name="MGN12H",
+    length_mm=45.4,
+    width_mm=27.0,
+    hole_length_mm=20.0,
+    hole_width_mm=20.0,
+    thread_mm=3.5,
+    mass_kg=0.054,
+)
+"""HIWIN, miniature guideways, series MGN: long carriage of size 12 (catalogue G99TE20, section 2-4)."""
+CARRIAGES, SCREWS_PER_CARRIAGE = 4, 4  #: Two carriages on either arm.
 
 # Our own layout, mm.
 _RAIL_TO_ROD = 60.0  # from the rear lower rod back to the rail: the actuators' cases stay clear of the carriages
@@ -89,6 +103,18 @@ def _window(d: LegDimensions) -> Shape:
     bottom, rod = low + _CORNER, d.lower_rod_mm[1] + _CORNER
     top_left, top_right = high - _CORNER, high - 2.0 * _CORNER
     return rounded_hull([(left, bottom), (right, rod), (right, top_right), (left, top_left)], _CORNER)
+
+
+@lru_cache(maxsize=64)
+def stand_mass_kg(d: LegDimensions) -> float:
+    """Return the mass that a base on the stand has to lift as well: both arms and their carriages, with their screws.
+
+    The rods' screws under an arm are as long beyond their own as the arm is thick, which is left out (0.5 g each).
+    """
+    length_mm = float(screw_length_mm(ARM_MM, MGN12H.thread_mm))
+    screw_mm3 = math.pi * (M3.head**2 * M3.head_height + M3.shank**2 * length_mm)
+    screw_kg = 1e-9 * screw_mm3 * MATERIALS.steel.density_kg_per_m3
+    return float(arm(d).mass_kg()) + CARRIAGES * (MGN12H.mass_kg + SCREWS_PER_CARRIAGE * screw_kg)
 
 
 def rod_screws(d: LegDimensions) -> tuple[tuple[str, int, str], ...]:

@@ -16,6 +16,7 @@ from pareto_monoped.design import NAMES, complete
 from pareto_monoped.geometry.parts import MassProperties
 from pareto_monoped.geometry.shapes import Floats
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
+from pareto_monoped.leg.stand import stand_mass_kg
 from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
 from pareto_monoped.robot.tables import (
     actuator_costs,
@@ -94,6 +95,8 @@ class RobotArrays:
     cost_eur: Floats
     made_parts: Floats
     bought_parts: Floats
+    #: Of what holds the base on the test stand (``leg.stand``), which is no part of the robot and in none of its masses
+    stand_mass_kg: Floats
     reason: tuple[str, ...]  #: why the robot cannot be built, empty if it can, n strings
     stops: JointStops  #: the end stops, which all robots with the same actuator maps share
 
@@ -151,6 +154,7 @@ def robot_arrays(designs: ArrayLike, maps: Maps, options: MassOptions = PARTS_ON
         cost_eur=cost_eur,
         made_parts=made,
         bought_parts=bought,
+        stand_mass_kg=np.full(len(values), stand_mass_kg(leg)),
         reason=reason,
         stops=JointStops(hip=hip_stop(leg), knee=knee_stop(leg)),
     )

@@ -33,6 +33,8 @@ Name = Literal[
     "gains",
     "delay_s",
     "battery_voltage",
+    "stand_mass",
+    "rail_friction",
 ]
 
 DIMENSIONS: tuple[tuple[Name, int], ...] = (
@@ -48,6 +50,8 @@ DIMENSIONS: tuple[tuple[Name, int], ...] = (
     ("battery_voltage", 1),
 )
 """Ranges and how many independent numbers each has, in the order of the points' coordinates."""
+STAND_DIMENSIONS: tuple[tuple[Name, int], ...] = (("stand_mass", 1), ("rail_friction", 1))
+"""Those that follow where there is a stand."""
 DEFAULT_SAMPLES = 256
 """Samples per design. 256 points estimate a 5th percentile to within 1.4 percent of
 the probability at random, and Sobol points do better on smooth measures."""
@@ -57,32 +61,37 @@ the probability at random, and Sobol points do better on smooth measures."""
 class Samples:
     """Values of everything that is uncertain, in ``count`` samples."""
 
-    points: Floats  #: in the unit cube, shape (count, sum of DIMENSIONS)
+    points: Floats  #: in the unit cube, shape (count, sum of ``dimensions``)
     values: dict[Name, Floats]  #: each range's values, shape (count, k)
 
     def __len__(self) -> int:
         return len(self.points)
 
 
+def dimensions(uncertainty: Uncertainty) -> list[tuple[Name, int]]:
+    """Return the ranges and how many independent numbers each has."""
+    return [(name, k) for name, k in (*DIMENSIONS, *STAND_DIMENSIONS) if name in uncertainty.ranges]
+
+
 def sobol_samples(uncertainty: Uncertainty, count: int = DEFAULT_SAMPLES, seed: int = DEFAULT_SEED) -> Samples:
     """Draw scrambled Sobol points (Owen 1998, by SciPy) on all ranges; ``count`` is a power of two.
 
-    The same seed gives the same samples whatever the ranges are, and for every design.
+    The same seed gives the same samples whatever the ranges are, and for every design; with a stand there are others.
     """
     from scipy.stats import qmc
 
     if count < 1 or count & (count - 1):
         raise InputError(complaint("samples", count, "a power of two, such as 256 or 512", "correct it"))
-    generator = qmc.Sobol(d=sum(k for _, k in DIMENSIONS), scramble=True, rng=np.random.default_rng(seed))
+    generator = qmc.Sobol(d=sum(k for _, k in dimensions(uncertainty)), scramble=True, rng=np.random.default_rng(seed))
     points = np.asarray(generator.random_base2(count.bit_length() - 1), dtype=np.float64)
     return samples_at(uncertainty, points)
 
 
 def samples_at(uncertainty: Uncertainty, points: Floats) -> Samples:
-    """Return the samples at points of the unit cube, shape (count, sum of ``DIMENSIONS``)."""
+    """Return the samples at points of the unit cube, shape (count, sum of ``dimensions``)."""
     values: dict[Name, Floats] = {}
     first = 0
-    for name, k in DIMENSIONS:
+    for name, k in dimensions(uncertainty):
         ends = uncertainty.ranges[name]
         values[name] = ends.lower + (ends.upper - ends.lower) * points[:, first : first + k]
         first += k
@@ -96,6 +105,8 @@ def variations(samples: Samples, designs: int, calibration: Calibration) -> Vari
     if round(longest / period) > MOST_DELAY:
         allowed = f"at most {MOST_DELAY} control periods of {period:g} s with that of the calibration"
         raise InputError(complaint("delay_s", longest, allowed, "shorten it"))
+
+    total = designs * len(samples)
 
     def factors(name: Name) -> Floats:
         return np.tile(1.0 + samples.values[name], (designs, 1))
@@ -114,6 +125,7 @@ def variations(samples: Samples, designs: int, calibration: Calibration) -> Vari
         link_lengths_m=np.tile(samples.values["link_length_m"], (designs, 1)),
         gains=factors("gains"),
         delays_s=np.tile(samples.values["delay_s"], (designs, 1))[:, 0],
+        **{name: factor(name) if name in samples.values else np.ones(total) for name, _ in STAND_DIMENSIONS},
     )
 
 
@@ -152,7 +164,8 @@ class RobustEvaluator:
     @cached_property
     def drawn(self) -> Samples:
         """The samples of every design."""
-        return sobol_samples(self.sampling.ranges, self.sampling.samples, self.sampling.seed)
+        ranges = self.sampling.ranges.where(stand=self.evaluator.calibration.stand is not None)
+        return sobol_samples(ranges, self.sampling.samples, self.sampling.seed)
 
     def __call__(self, designs: ArrayLike, motors: ArrayLike | None = None) -> RobustEvaluations:
         """Jump with each design, and as built with those that jump as designed.

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from pareto_monoped.config import Strict
 from pareto_monoped.errors import InputError, complaint
-from pareto_monoped.uncertainty.samples import DIMENSIONS, Floats, Name
+from pareto_monoped.uncertainty.samples import Floats, Name, dimensions
 from pareto_monoped.uncertainty.settings import Uncertainty
 
 Simulate = Callable[[Floats], tuple[NDArray[np.bool_], Floats]]
@@ -139,18 +139,20 @@ _LABELS: dict[Name, tuple[str, ...]] = {
     "gains": ("gain K", "gain C", "gain T"),
     "delay_s": ("delay",),
     "battery_voltage": ("battery voltage",),
+    "stand_mass": ("mass of the stand",),
+    "rail_friction": ("rail friction",),
 }
 _MADE: frozenset[Name] = frozenset(
-    ("masses", "friction", "damping", "stop_stiffness", "foot_stiffness", "link_length_m")
+    ("masses", "friction", "damping", "stop_stiffness", "foot_stiffness", "link_length_m", "stand_mass")
 )
 """Ranges that come from making parts: printing, moulding, machining, greasing. The others are of motors and electronics
 that are bought, and of use."""
 
 
 def factors_of(ranges: Uncertainty) -> tuple[Factor, ...]:
-    """Return the factors of all ranges, in the order of ``samples.DIMENSIONS``."""
+    """Return the factors of all ranges, in the order of ``samples.dimensions``."""
     found = []
-    for name, count in DIMENSIONS:
+    for name, count in dimensions(ranges):
         ends = ranges.ranges[name]
         for k, label in enumerate(_LABELS[name]):
             found.append(

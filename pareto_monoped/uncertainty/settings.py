@@ -1,7 +1,7 @@
 """Ranges of everything that is uncertain in a built robot, and the samples that a study searches with, from TOML."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,6 +12,7 @@ from pareto_monoped.errors import InputError, StudyError, complaint
 
 SHIPPED, WHAT = "uncertainty.toml", "uncertainty file"
 """The shipped file, and what such a file is called in messages."""
+_STAND_RANGES = ("stand_mass", "rail_friction")  # which only a calibration with a stand has
 _LEAST_SHARE, _MOST_LENGTH_M = -0.9, 0.01
 """Beyond these nothing is left of a part, or its mass no longer fits its length. Our own choice."""
 
@@ -46,6 +47,9 @@ class Uncertainty(Strict):
     gains: Range
     delay_s: Range
     battery_voltage: Range
+    #: stand_mass, rail_friction: None where they are as shipped, and where there is no stand
+    stand_mass: Range | None = None
+    rail_friction: Range | None = None
 
     def __post_init__(self) -> None:
         """Refuse what no robot can have."""
@@ -64,11 +68,18 @@ class Uncertainty(Strict):
     @property
     def ranges(self) -> dict[str, Range]:
         """The ranges by name, in the order of the file."""
-        return {name: getattr(self, name) for name in self.__dataclass_fields__ if name != "name"}
+        ranges = {name: getattr(self, name) for name in self.__dataclass_fields__ if name != "name"}
+        return {name: found for name, found in ranges.items() if found is not None}
 
     def as_dict(self) -> dict[str, Any]:
         """Return the ranges as in a file; ``uncertainty_of`` reads them back."""
-        return asdict(self)
+        return {"name": self.name, **{name: asdict(found) for name, found in self.ranges.items()}}
+
+    def where(self, *, stand: bool) -> "Uncertainty":
+        """Return the ranges of a calibration with or without a stand, as shipped where these name none for it."""
+        if not stand:
+            return replace(self, stand_mass=None, rail_friction=None)
+        return uncertainty_of(_shipped(stand=True) | self.as_dict(), source=WHAT)
 
 
 def uncertainty_of(values: Mapping[str, Any], *, source: str, error: type[InputError] = InputError) -> Uncertainty:
@@ -76,9 +87,14 @@ def uncertainty_of(values: Mapping[str, Any], *, source: str, error: type[InputE
     return checked(Uncertainty, values, source=source, error=error)
 
 
+def _shipped(*, stand: bool) -> dict[str, Any]:
+    values = read_shipped(SHIPPED, what=WHAT)
+    return {name: value for name, value in values.items() if stand or name not in _STAND_RANGES}
+
+
 def load_uncertainty(path: Path | None = None) -> Uncertainty:
-    """Read the shipped ranges, or those of a file: what it leaves out is as shipped."""
-    shipped = read_shipped(SHIPPED, what=WHAT)
+    """Read the shipped ranges, or those of a file: what it leaves out is as shipped. For a stand see ``where``."""
+    shipped = _shipped(stand=False)
     if path is None:
         return uncertainty_of(shipped, source=WHAT)
     own = read_toml(path, what=WHAT)
@@ -113,8 +129,8 @@ class Sampling:
         return {**self.ranges.as_dict(), "samples": self.samples, "seed": self.seed}
 
 
-def sampling_of(table: Mapping[str, Any], *, source: str) -> Sampling:
-    """Return the table ``[uncertainty]`` of a study; what it leaves out is as shipped."""
+def sampling_of(table: Mapping[str, Any], *, source: str, stand: bool = False) -> Sampling:
+    """Return the table ``[uncertainty]`` of a study; what it leaves out is as shipped, on a ``stand`` or elsewhere."""
     given = dict(table)
     samples, seed = given.pop("samples", SEARCH_SAMPLES), given.pop("seed", DEFAULT_SEED)
     whole = isinstance(samples, int) and not isinstance(samples, bool)
@@ -126,6 +142,6 @@ def sampling_of(table: Mapping[str, Any], *, source: str) -> Sampling:
         raise StudyError(f"{source}: {complaint('uncertainty.seed', seed, allowed, 'correct it')}")
     if given:
         given.setdefault("name", OWN)
-    values, place = read_shipped(SHIPPED, what=WHAT) | given, f"{source}, table [uncertainty]"
+    values, place = _shipped(stand=stand) | given, f"{source}, table [uncertainty]"
     ranges = uncertainty_of(values, source=place, error=StudyError)
     return Sampling(ranges=ranges, samples=samples, seed=seed)

@@ -88,6 +88,15 @@ def test_an_export_in_another_pose_is_stale(original):
         assert is_made(other, any_pose=True)
 
 
+@pytest.mark.parametrize("jump", ["as_built", "stand"])
+def test_a_robot_that_cannot_stand_has_no_models_of_its_jumps(copy, jump):
+    edit(copy, lambda record: record["formats"].append("mjcf"))
+    job = dataclasses.replace(copy, formats=("mjcf",))
+    assert not is_made(job)
+    edit(copy, lambda record: record["jumps"][jump].update(status="cannot_stand"))
+    assert is_made(job)
+
+
 def test_an_export_by_another_version_is_stale(original, monkeypatch):
     monkeypatch.setattr("pareto_monoped.cad.write.design_record.MADE_BY", "pareto-monoped 99.0")
     assert not is_made(original)

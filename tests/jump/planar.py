@@ -15,18 +15,21 @@ GRAVITY = 9.81
 SUBSTEPS = 20
 """Steps per control period of 1 ms."""
 LEAST = 1e-4
+CREEP = 1e-3
+"""Speed in m/s beyond which the friction of the rails is whole."""
 
 Machine = namedtuple(
     "Machine",
     "thigh shank radius mass centres inertia reflected coupling lower upper stop peak no_load corner loss heat gains"
-    " rest release damping friction loss_speed foot mu slip fade inverse start delay",
+    " rest release damping friction loss_speed foot mu slip fade inverse start delay guided stand rails",
 )
 """One robot with its drives, stops, contact and controller.
 
 mass (3,): of base, thigh and shank. centres: x and z of those of thigh and shank. inertia (2,): of thigh and shank.
 reflected (2,): C of hip and knee. coupling: B of the knee. lower, upper, peak, no_load, corner, loss, heat (2,): of hip
 and knee. stop: K, C, w and D of hip and knee. foot: K, C, w and D. gains: K, C and T. inverse (3,): A of hip, knee and
-foot, filled in by ``with_inverse_masses``. delay: in control periods.
+foot, filled in by ``with_inverse_masses``. delay: in control periods. guided: whether the base moves in z only. stand,
+rails: what it lifts besides the robot in kg, and the Coulomb friction of its rails in N.
 """
 
 
@@ -53,6 +56,8 @@ def bodies(q, m):
     matrix = m.mass[1] * thigh.T @ thigh + m.mass[2] * shank.T @ shank
     matrix[0, 0] += m.mass[0]
     matrix[1, 1] += m.mass[0]
+    matrix[0, 0] += m.stand
+    matrix[1, 1] += m.stand
     matrix[2, 2] += m.inertia[0] + m.inertia[1] + m.reflected[0]
     matrix[2, 3] += m.inertia[1] + m.coupling
     matrix[3, 2] += m.inertia[1] + m.coupling
@@ -100,7 +105,7 @@ def acceleration(q, v, motor, m, mode):
     w1, w2 = v[2] ** 2, (v[2] + v[3]) ** 2
     down = np.array([0.0, GRAVITY])
     force = -m.mass[1] * thigh.T @ (down - first * w1) - m.mass[2] * shank.T @ (down - knee * w1 - second * w2)
-    force[1] -= m.mass[0] * GRAVITY
+    force[1] -= (m.mass[0] + m.stand) * GRAVITY + m.rails * np.tanh(v[1] / CREEP)
     beyond, side, virtual, push = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
     for j in range(2):
         torque = motor[j] - m.loss[j] * abs(motor[j]) * np.tanh(v[2 + j] / m.loss_speed)
@@ -143,6 +148,9 @@ def acceleration(q, v, motor, m, mode):
             if mode[3 + j] == 1:
                 left[i, i] += virtual[j]
                 right[i] += virtual[j] * push[j] * side[j]
+        if m.guided:
+            left[0, :] = left[:, 0] = right[0] = 0.0
+            left[0, 0] = 1.0
         a = solved(left, right)
         n, t = pull_n - up @ a, pull_t - along @ a
         found[0] = 0
@@ -222,7 +230,8 @@ def jump(m, q):
 def with_inverse_masses(m):
     """With A of hip, knee and foot."""
     matrix, _, shank, *_ = bodies(np.zeros(4), m)
-    inverse = np.linalg.inv(matrix)
+    inverse, free = np.zeros((4, 4)), slice(int(m.guided), 4)
+    inverse[free, free] = np.linalg.inv(matrix[free, free])
     return m._replace(inverse=np.array([inverse[2, 2], inverse[3, 3], np.trace(shank @ inverse @ shank.T) / 3]))
 
 
@@ -232,7 +241,7 @@ def standing(m):
     for _ in range(60):
         depth = 0.5 * (low + high)
         mass, k, _ = law(depth, m.foot, m.inverse[2])
-        low, high = (depth, high) if mass * k * depth < m.mass.sum() * GRAVITY else (low, depth)
+        low, high = (depth, high) if mass * k * depth < (m.mass.sum() + m.stand) * GRAVITY else (low, depth)
     reach = m.start - m.radius + depth
     knee = np.arccos((reach**2 - m.thigh**2 - m.shank**2) / (2 * m.thigh * m.shank))
     hip = -np.arctan2(m.shank * np.sin(knee), m.thigh + m.shank * np.cos(knee))

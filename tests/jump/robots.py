@@ -58,6 +58,7 @@ def plausible_robots(designs):
         body_com_m=com,
         body_inertia_kg_m2=inertia,
         foot_radius_m=np.full(n, 0.025),
+        stand_mass_kg=np.full(n, 0.4),
         start_height_m=np.full(n, BASE_START_HEIGHT_M),
         ratio=ratio,
         armature_kg_m2=1.0e-4 * ratio**2,

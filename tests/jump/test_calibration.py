@@ -10,12 +10,13 @@ from pareto_monoped.jump.calibration import (
     calibration_values,
     earlier_calibrations,
     load_calibration,
+    on_stand,
 )
 from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 
 
-def test_three_ship_and_the_default_is_the_well_posed_one():
-    assert calibration_names() == ("reference", "ideal", "paper")
+def test_four_ship_and_the_default_is_the_well_posed_one():
+    assert calibration_names() == ("reference", "ideal", "paper", "stand")
     assert load_calibration().name == "reference"
     assert isinstance(load_calibration().gate, FadeGate)
 
@@ -56,6 +57,31 @@ def test_ideal_is_reference_without_losses():
         drive=reference.drive,
     )
     assert same == reference
+
+
+def test_stand_is_reference_on_its_rails_and_any_calibration_goes_there():
+    stand, paper = load_calibration("stand"), load_calibration("paper")
+    guided = on_stand(load_calibration("reference"))
+    assert replace(guided, name="stand", version=stand.version, description=stand.description) == stand
+    assert on_stand(stand) is stand
+    assert on_stand(paper).stand == stand.stand
+    assert on_stand(paper).simulation == paper.simulation
+
+
+def test_a_stand_is_left_out_of_stored_values_where_there_is_none():
+    """Studies stored before there was one keep their hash."""
+    assert "stand" not in calibration_values(load_calibration("reference"))
+    assert calibration_values(load_calibration("stand"))["stand"] == {"rail_friction_n": 1.0}
+    for name in calibration_names():
+        known = load_calibration(name)
+        assert calibration_of(calibration_values(known), source="again") == known
+
+
+def test_a_base_that_slides_away_is_on_no_stand(tmp_path):
+    path = tmp_path / "away.toml"
+    path.write_text(_text("stand").replace("base_slides = false", "base_slides = true"))
+    with pytest.raises(CalibrationError, match="base_slides must be false with a table stand"):
+        load_calibration(str(path))
 
 
 def _text(name="reference"):

@@ -43,6 +43,15 @@ def knee_force(moment, floor):
     return acceleration[[0, 2]] * moment.model.body("shank").mass[0] - np.asarray(floor)[:2]
 
 
+def floor_force(moment):
+    """Of the floor on the foot, x and z, from MuJoCo's contacts: a base on rails has no coordinate for x."""
+    total, force = np.zeros(3), np.zeros(6)
+    for k, contact in enumerate(moment.data.contact):
+        mujoco.mj_contactForce(moment.model, moment.data, k, force)
+        total += contact.frame.reshape(3, 3).T @ force[:3]
+    return total[[0, 2]]
+
+
 def loads_by_mujoco(robots, control, calibration):
     """Stop torque, stop energy, foot force, gear torques and chain pull of one jump, from a plain loop."""
     foot = energy = pull = knee = 0.0
@@ -53,21 +62,21 @@ def loads_by_mujoco(robots, control, calibration):
     for moment in moments(robots, control, calibration):
         if moment.last:
             break
-        _, limits, force = constraint_forces(moment.data)
+        limits, force = constraint_forces(moment.data)[1], floor_force(moment)
         knee = max(knee, np.linalg.norm(knee_force(moment, force)))
-        limits = limits[2:]
-        change = (moment.after.qvel - moment.qvel) / STEP
+        limits = limits[-2:]
+        change = (moment.after.qvel - moment.qvel)[-2:] / STEP
         stop, foot = np.maximum(stop, np.abs(limits)), max(foot, np.hypot(force[0], force[1]))
         for k, (lower, upper) in enumerate(ends):
-            beyond[k] = max(beyond[k], lower - moment.qpos[2 + k], moment.qpos[2 + k] - upper)
-        energy -= float(limits @ (0.5 * (moment.qvel[2:] + moment.after.qvel[2:]))) * STEP
-        motor = np.array([change[2], change[3]]) * ratio + [0.0, change[2] if absolute else 0.0]
+            beyond[k] = max(beyond[k], lower - moment.qpos[-2 + k], moment.qpos[-2 + k] - upper)
+        energy -= float(limits @ (0.5 * (moment.qvel[-2:] + moment.after.qvel[-2:]))) * STEP
+        motor = change * ratio + [0.0, change[0] if absolute else 0.0]
         torque = moment.record["motor_torque_n_m"]
         gear = np.maximum(gear, np.abs(torque - rotor * ratio * motor))
         if absolute:
-            before = robots.knee_reflected_kg_m2[0] * change[3] + robots.knee_coupling_kg_m2[0] * change[2]
+            before = robots.knee_reflected_kg_m2[0] * change[1] + robots.knee_coupling_kg_m2[0] * change[0]
         else:
-            before = robots.armature_kg_m2[0, 1] * change[3]
+            before = robots.armature_kg_m2[0, 1] * change[1]
         pull = max(pull, abs(moment.data.ctrl[1] - before) / robots.sprocket_radius_m[0])
     return {
         "peak_stop_torque_n_m": stop.max(),
@@ -82,7 +91,7 @@ def loads_by_mujoco(robots, control, calibration):
         "peak_gear_torque_hip_n_m": gear[0],
         "peak_gear_torque_knee_n_m": gear[1],
         "peak_chain_tension_n": pull,
-        "drift_m": abs(moment.qpos[0]),
+        "drift_m": abs(moment.qpos[0]) if len(moment.qpos) == 4 else 0.0,
     }
 
 

@@ -34,6 +34,8 @@ def neutral(n=2, **changes):
         "link_lengths_m": np.zeros((n, 2)),
         "gains": np.ones((n, 3)),
         "delays_s": np.zeros(n),
+        "stand_mass": np.ones(n),
+        "rail_friction": np.ones(n),
     }
     return Variations(**(fields | changes))
 

@@ -13,7 +13,16 @@ from pareto_monoped.geometry.shapes import Circle
 from pareto_monoped.leg.base import base_parts
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.sandwich import rounded_hull
-from pareto_monoped.leg.stand import ARM_MM, MGN12H, arm, carriage_places, carriage_screw, rod_places, rod_screws
+from pareto_monoped.leg.stand import (
+    ARM_MM,
+    MGN12H,
+    arm,
+    carriage_places,
+    carriage_screw,
+    rod_places,
+    rod_screws,
+    stand_mass_kg,
+)
 
 LEGS = [leg_dimensions(map_for(name)) for name in motor_names()]
 EACH = pytest.mark.parametrize("leg", LEGS, ids=motor_names())
@@ -57,6 +66,16 @@ def test_arms_and_carriages_are_clear_of_the_hip_actuator_and_of_each_other(leg)
     (x, low, _), (_, high, _) = carriage_places(leg)
     assert np.hypot(x + 0.5 * MGN12H.width_mm, max(low - 0.5 * MGN12H.length_mm, 0.0)) > case_mm + 10.0
     assert high - low > MGN12H.length_mm + 10.0
+
+
+@EACH
+def test_what_a_base_lifts_is_two_arms_four_carriages_and_their_screws(leg):
+    """Arms by the area of their outline less its holes, in aluminium; carriages as in HIWIN's catalogue."""
+    (prism,) = arm(leg).prisms
+    (outline,) = (Polygon(ring) for ring in all_polygons([prism.outline], 0.001))
+    area_mm2 = outline.area - sum(Polygon(ring).area for ring in all_polygons(prism.holes, 0.001))
+    arms_kg = 2 * area_mm2 * ARM_MM * 2.71e-6
+    assert stand_mass_kg(leg) == pytest.approx(arms_kg + 4 * 0.054 + 16 * 1.0e-3, abs=0.0003)
 
 
 def test_screws_reach_their_threads_and_not_through(leg):

@@ -5,7 +5,8 @@ pairs, each a group code and a value on lines of their own (AutoCAD DXF referenc
 ``test_stand/`` of an export has the arms that hang the base on two vertical rails.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -125,25 +126,32 @@ def _number(value: float) -> str:
     return f"{value:.6f}"
 
 
-def stand_files(d: LegDimensions) -> dict[str, str]:
-    """Return content by path in the export's folder: the arm for the laser, and how it is used."""
-    return {"test_stand/arm.dxf": dxf(arm(d)), "test_stand/README.md": _readme(d)}
+def stand_files(d: LegDimensions, record: Mapping[str, Any]) -> dict[str, str]:
+    """Return content by path in the export's folder: the arm for the laser, and how it is used.
+
+    ``record``: that of the export, which has both jumps.
+    """
+    return {"test_stand/arm.dxf": dxf(arm(d)), "test_stand/README.md": _readme(d, record)}
 
 
-def _readme(d: LegDimensions) -> str:
-    part = arm(d)
+def _readme(d: LegDimensions, record: Mapping[str, Any]) -> str:
+    part, there = arm(d), record["jumps"]["stand"]
+    heights = (record["jumps"]["as_built"]["height_m"], there["height_m"])
+    own, here = ("not at all" if height is None else f"{height:.3f} m high" for height in heights)
     (x, low, _), (_, high, _) = carriage_places(d)
     screws = "\n".join(f"| {count} | {which} | {where} |" for where, count, which in rod_screws(d))
     return f"""# Test stand
 
-Two arms hang the base on two vertical rails, which keep it upright as the simulation does. Each weighs
-{1e3 * float(part.unit_mass_kg()):.0f} g without its carriages. The simulation counts neither arms nor carriages, which
-the robot has to lift as well.
+Two arms hang the base on two vertical rails. Each weighs {1e3 * float(part.unit_mass_kg()):.0f} g without carriages.
+
+The rails hold the base upright, keep it from moving along the floor, and take {there["rail_friction_n"]:.1f} N of
+friction; the robot lifts arms, carriages and screws of {there["mass_kg"]:.3f} kg as well. By simulation it jumps {here}
+on this stand (`model/jump_stand.json`), and {own} under the calibration of this export, {record["calibration"]}.
 
 | number | part | where |
 |---:|---|---|
 | 2 | `arm.dxf`: {part.note}, {part.grade.name if part.grade else ""} | outside of either cheek |
-| 4 | carriage {MGN12H.name} (HIWIN, series MGN) | two on the outside of each arm |
+| 4 | carriage {MGN12H.name} (HIWIN, series MGN), preload Z0, oiled | two on the outside of each arm |
 | 2 | rail {MGN12H.name.removesuffix("H")}, as long as the jump and {high - low + MGN12H.length_mm:.0f} mm | vertical |
 | 16 | {carriage_screw()} | through the arms into the carriages |
 {screws}

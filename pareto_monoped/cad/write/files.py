@@ -19,7 +19,7 @@ from pareto_monoped.cad.write.folder import safe, write
 from pareto_monoped.cad.write.meshes import METRES, Visual, colliders
 from pareto_monoped.cad.write.mjcf import jump_record, replay_script
 from pareto_monoped.design import Design
-from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.calibration import Calibration, on_stand
 from pareto_monoped.jump.model import mjcf as simulated_mjcf
 from pareto_monoped.jump.model import start_pose
 from pareto_monoped.robot.population import RobotArrays
@@ -61,7 +61,7 @@ def write_drawings(folder: Path, product: Product, record: Mapping[str, Any], fo
     for unique in product.unique:
         if dxf.is_flat(unique.part):
             write(folder, f"laser/{safe(unique.name)}.dxf", dxf.dxf(unique.part))
-    for path, content in stand_files(product.robot.leg).items():
+    for path, content in stand_files(product.robot.leg, record).items():
         write(folder, path, content)
 
 
@@ -74,15 +74,20 @@ def write_models(
     calibration: Calibration,
     formats: Collection[str],
 ) -> None:
-    """Write URDF, MJCF and what its jump needs; no MJCF of a robot that cannot stand, as it has no jump."""
+    """Write URDF, MJCF and what its jumps need; no MJCF of a robot that cannot stand, as it has no jump.
+
+    There are two MJCF files and two jumps: under the calibration, and on the test stand.
+    """
     if not {"mjcf", "urdf"} & set(formats):
         return
     solid = colliders(product)
-    if "mjcf" in formats and np.isfinite(start_pose(arrays, calibration).hip_rad[0]):
-        document = mjcf.mjcf_with_meshes(simulated_mjcf(arrays, calibration), shown, solid)
-        write(folder, "model/monoped.xml", document)
-        write(folder, "model/jump.json", jump_record(arrays, design, calibration))
-        write(folder, "model/replay.py", replay_script())
+    if "mjcf" in formats:
+        for place, known in (("", calibration), ("_stand", on_stand(calibration))):
+            if np.isfinite(start_pose(arrays, known).hip_rad[0]):
+                document = mjcf.mjcf_with_meshes(simulated_mjcf(arrays, known), shown, solid)
+                write(folder, f"model/monoped{place}.xml", document)
+                write(folder, f"model/jump{place}.json", jump_record(arrays, design, known))
+                write(folder, "model/replay.py", replay_script())
     if "urdf" in formats:
         write(folder, "model/monoped.urdf", urdf.urdf(arrays, calibration.joints, shown, solid))
 

@@ -38,13 +38,15 @@ FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
             "laser/",
             "the plates for the laser cutter: true outline without kerf on the layer CUT, mm; NOTES says what follows",
         ),
-        ("test_stand/", "two arms that hang the base on vertical rails, and how they are used, mm"),
+        ("test_stand/", "two arms that hang the base on vertical rails, how they are used, and what differs there, mm"),
     ),
     "glb": (("assembly.glb", "the robot to look at in a browser or viewer, m"),),
     "mjcf": (
         ("model/monoped.xml", "MuJoCo model that makes the simulated jump, with meshes and colliders, SI units"),
         ("model/jump.json", "every number that the jump needs besides the model: motors, controller, losses, SI units"),
         ("model/replay.py", "makes the jump again with MuJoCo and NumPy alone: `python model/replay.py`"),
+        ("model/monoped_stand.xml", "the same robot on the rails of the test stand, with arms and carriages"),
+        ("model/jump_stand.json", "what its jump needs there: `python model/replay.py stand`"),
     ),
     "urdf": (("model/monoped.urdf", "the same robot for other simulators, SI units"),),
     "pdf": (

@@ -70,7 +70,7 @@ def _add_collider(body: ET.Element, collider: Collider) -> None:
 
 
 def jump_record(arrays: RobotArrays, design: Design, calibration: Calibration) -> str:
-    """Return the content of ``jump.json``."""
+    """Return the content of ``jump.json``, or of ``jump_stand.json`` under a calibration with a stand."""
     from pareto_monoped.jump.controller_record import TOUCH_M
 
     control = columns(design.as_array()[None], CONTROL)

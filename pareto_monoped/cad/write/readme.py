@@ -53,6 +53,13 @@ def _design(record: Mapping[str, Any], cost: Cost) -> Iterator[str]:
         "As built means lengths rounded to 0.1 mm and the gearboxes' real ratios, simulated again with calibration "
         f"{record['calibration']}."
     )
+    there = record["jumps"]["stand"]
+    if there["height_m"] is not None:
+        yield (
+            f"On the stand of `test_stand/`, whose rails keep the base from moving along the floor and rub, and with "
+            f"{there['mass_kg']:.3f} kg of arms and carriages, it jumps {there['height_m']:.4g} m with "
+            f"{there['energy_j']:.4g} J."
+        )
     yield ""
 
 
