@@ -223,6 +223,12 @@ class JumpMeasures:
         short="made")]
     bought_parts: Annotated[Floats, _less("1", 0, "parts bought", "pieces of the robot that are bought, such as screws",
         reference=500.0, short="bought")]
+    rise_m: Annotated[Floats, _more("m", 3, "rise of the centre of mass",
+        "rise of the centre of mass from lift-off to its apex, which is what published jumpers compare", reference=0.0,
+        short="rise", place=22, leading=True)]
+    above_standing_m: Annotated[Floats, _more("m", 3, "height above standing",
+        "height less that of the base when the robot stands on a leg as straight as its knee's stop allows",
+        reference=0.0, short="above st.", place=24, leading=True)]
     # fmt: on
 
 
@@ -230,7 +236,7 @@ MEASURES: tuple[Measure, ...] = _described(JumpMeasures)
 """Every measure of a jump, in the order of the fields of ``jump.evaluate.Evaluations`` and of the database columns."""
 MEASURE_NAMES: tuple[str, ...] = tuple(measure.name for measure in MEASURES)
 ENERGIES: tuple[str, ...] = tuple(measure.name for measure in MEASURES if measure.work_share)
-"""What a jump costs: the energies that are never less than the work against gravity, m g (H - start height)."""
+"""What a jump costs: the energies that are never less than ``jump.gravity.least_energy_j``."""
 
 _PERTURBED = "links moved by 1e-6"
 

@@ -98,6 +98,8 @@ def test_directions():
         "link_safety",
         "gear_strike_safety",
         "agility_m_per_s",
+        "rise_m",
+        "above_standing_m",
     ]
     assert [name for name in better if better[name] is None] == ["lift_off_s", "apex_s"]
 

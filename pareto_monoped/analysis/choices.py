@@ -1,8 +1,9 @@
 """What choosing by mechanical energy costs at the battery; competitors of the paper's design; numbered trials."""
 
 import contextlib
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import pandas as pd
@@ -101,11 +102,16 @@ CASE = PAPER_CASES["C"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Competitor:
-    """One line of the comparison: a design in words, and its jump."""
+    """One line of the comparison: a design in words, and its jump; NaN where that is not known."""
 
     label: str
     height_m: float
     energy_j: float
+    rise_m: float = math.nan
+    above_standing_m: float = math.nan
+
+
+_COMPETED = tuple(one.name for one in fields(Competitor) if one.name != "label")
 
 
 def headline(data: StudyData, knee_trial: int) -> tuple[Competitor, ...]:
@@ -114,8 +120,7 @@ def headline(data: StudyData, knee_trial: int) -> tuple[Competitor, ...]:
     evaluations = Evaluator(data.case_kit, data.calibration)(CASE.design.as_array())
     simulated = Competitor(
         label=f"paper's Case {CASE.name}, simulated here" + (f" with {data.case_kit.label}" if several else ""),
-        height_m=float(evaluations.height_m[0]),
-        energy_j=float(evaluations.energy_j[0]),
+        **{name: float(evaluations.of(name)[0]) for name in _COMPETED},
     )
     front, objectives = data.front(), data.study.objectives
     chosen = []
@@ -130,8 +135,7 @@ def headline(data: StudyData, knee_trial: int) -> tuple[Competitor, ...]:
         *(
             Competitor(
                 label=f"{label}, trial {trial}" + (f", {jumps.loc[trial, 'motor']}" if several else ""),
-                height_m=float(jumps.loc[trial, "height_m"]),
-                energy_j=float(jumps.loc[trial, "energy_j"]),
+                **{name: float(jumps.loc[trial, name]) for name in _COMPETED},
             )
             for label, trial in chosen
         ),

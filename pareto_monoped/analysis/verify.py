@@ -175,7 +175,10 @@ def _jump_findings(
     jumps = evaluation_of(data.study, simulator.evaluator)(designs, data.kit_numbers(rows))
     for name in (*MEASURE_NAMES, *data.study.robust_names):
         again, stored = jumps.of(name), rows[name].to_numpy(dtype=np.float64)
-        for k in np.flatnonzero(~((again == stored) | (np.isnan(again) & np.isnan(stored))))[:1]:
+        # Trials that were stored before the first one with a measure are older than it.
+        has = np.flatnonzero(data.trials[name].notna())
+        older = numbers < (has[0] if len(has) else len(data.trials))
+        for k in np.flatnonzero(~((again == stored) | (np.isnan(stored) & (np.isnan(again) | older))))[:1]:
             yield f"trial {numbers[k]} jumps otherwise: its {name} is {float(stored[k])!r}, again {float(again[k])!r}"
     for k in np.flatnonzero(jumps.status != rows["status"].to_numpy(dtype=np.str_))[:1]:
         yield f"trial {numbers[k]} ends otherwise: {rows['status'].iloc[k]}, simulated again {jumps.status[k]}"

@@ -6,6 +6,7 @@ import textwrap
 import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -182,11 +183,13 @@ def _print_headline(data: "StudyData", knee_trial: int) -> None:
 
     table = Table(box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
     table.add_column("design")
-    table.add_column("height / m", justify="right")
-    table.add_column("energy / J", justify="right")
+    for title in ("height\n/ m", "energy\n/ J", "stands\n/ m", "rise\n/ m"):
+        table.add_column(title, justify="right")
     for row in headline(data, knee_trial):
-        table.add_row(row.label, f"{row.height_m:.3f}", f"{row.energy_j:.2f}")
+        jump = (row.height_m, row.energy_j, row.height_m - row.above_standing_m, row.rise_m)
+        table.add_row(row.label, *("-" if isnan(v) else f"{v:.{d}f}" for v, d in zip(jump, (3, 2, 3, 3), strict=True)))
     new_console(width=80).print(table)
+    echo("stands: its base on a straight leg; rise: of its centre of mass from lift-off\n")
 
 
 def _print_choices(studies: "list[StudyData]") -> None:

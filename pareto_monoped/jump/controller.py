@@ -115,6 +115,10 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
     if touching:
         jump.stood = 1.0
         jump.lift_off_step = jump.steps
+    if jump.steps <= jump.lift_off_step + 1:
+        after = 0 if touching else 1
+        for k in range(4):
+            jump.lift_off_positions[after, k] = jump.position[k]
     gate = _gate(read_clearance, touching, jump) if tick else 0.0
     _end(q, v, jump)
     if jump.status != RUNNING:

@@ -61,6 +61,7 @@ RECORD = np.dtype(
         ("height_m", _ONE),  # highest so far
         ("clearance_m", _ONE),
         ("lift_off_step", _ONE),  # last step with contact
+        ("lift_off_positions", (np.float64, (2, 4))),  # x, z, hip, knee at that step and at the next
         ("stood", _ONE),  # the foot has touched the floor
         ("off_floor", _ONE),  # the foot has left the floor after it has stood
         ("touched", _ONE),  # contact one step ago

@@ -21,6 +21,7 @@ from pareto_monoped.design import (
     nonsense,
 )
 from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.gravity import rise_m, standing_height_m
 from pareto_monoped.jump.model import start_pose
 from pareto_monoped.jump.population import Population, Records, prepare
 from pareto_monoped.jump.variations import Variations, joined, take, varied_control, varied_robots
@@ -225,6 +226,8 @@ def _collect(
         "sustained_jumps_per_minute": _sustained_per_minute(records, robots.continuous_torque_n_m),
         "peak_stop_torque_n_m": records["peak_stop_torque_n_m"].max(axis=1),
         **_by_joint("stop_compression_{}", records["peak_beyond_stop_rad"] / travels_rad),
+        "rise_m": rise_m(robots, records),
+        "above_standing_m": records["height_m"] - standing_height_m(robots, calibration),
         "agility_m_per_s": rise / np.where(ok, (records["steps"] - 1) * step, np.nan),
     }
     for name, values in measures.items():

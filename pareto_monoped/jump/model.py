@@ -80,19 +80,29 @@ def start_pose(robots: RobotArrays, calibration: Calibration) -> StartPose:
 def compression_m(contact: SpringContact, force_n: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the compression of the foot's rubber under a steady force, shape (n,), by Newton's method.
 
-    Without velocity and acceleration, the force of MuJoCo's constraint (see ``spring_fields``) is k (1 - D) d^2 / (D^2
-    (1 - d)) r up to the full width, and k r beyond. It is convex up to the full width, so that Newton's method
-    converges from there monotonically.
+    The force is convex up to the full width, so that Newton's method converges from there monotonically.
     """
     full, least, width = contact.impedance, LEAST_IMPEDANCE, contact.width_m
     slope = (full - least) / width
     r = np.full(force_n.shape, width)
     for _ in range(_NEWTON_STEPS):
         d = least + slope * r
-        force = contact.stiffness_n_per_m * (1.0 - full) * d**2 / (full**2 * (1.0 - d)) * r
+        force = slow_force_n(contact, r)
         r = r - (force - force_n) / (force * (2.0 * slope / d + slope / (1.0 - d) + 1.0 / r))
     linear = force_n / contact.stiffness_n_per_m
     return np.where(linear < width, r, linear)
+
+
+def slow_force_n(contact: SpringContact, compression_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the force of the foot's rubber at rest.
+
+    Without velocity and acceleration, the force of MuJoCo's constraint (see ``spring_fields``) is k (1 - D) d^2 / (D^2
+    (1 - d)) r up to the full width, and k r beyond.
+    """
+    full, width = contact.impedance, contact.width_m
+    d = LEAST_IMPEDANCE + (full - LEAST_IMPEDANCE) / width * np.minimum(compression_m, width)
+    scale = contact.stiffness_n_per_m * (1.0 - full) * d**2 / (full**2 * (1.0 - d))
+    return np.asarray(scale * compression_m)
 
 
 # Body numbers in the model; the world is 0.

@@ -15,6 +15,7 @@ from pareto_monoped.definition.variables import Bounds
 from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES, PAPER_CASES, Variable
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.jump.end_stops import end_stops
+from pareto_monoped.jump.gravity import least_of_all_j
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.shank import foot_part
 from pareto_monoped.pareto.pick import pick
@@ -27,7 +28,7 @@ from pareto_monoped.report.resimulation import MOST_FRAMES, Resimulation, jumps_
 from pareto_monoped.report.robust import alternatives_of, influences_of, robust_of
 from pareto_monoped.report.schema import Model3D, Picked, StudyCard
 from pareto_monoped.report.summary import command, notes, provenance, sentences
-from pareto_monoped.report.trials import LETTERS, audit_records, history_columns, thinned, trial_columns
+from pareto_monoped.report.trials import LETTERS, MOST_ROWS, audit_records, history_columns, thinned, trial_columns
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.search.weighted import weighted_cost
 from pareto_monoped.storage.extra_rows import Stored, StoredSensitivity
@@ -39,6 +40,11 @@ if TYPE_CHECKING:
 
 HEADLINES_M = (0.7, HEADLINE_HEIGHT_M, 0.9)
 """Heights at which designs are pointed out and studies compared: that of the paper's Case C and 0.1 m around it."""
+
+
+FLOOR_HEIGHTS_M = (*np.round(np.arange(0.36, 2.0, 0.01), 2).tolist(), 2.5, 3.0, 4.0, 5.0, 7.0, 10.0)
+"""Heights at which the floor of a front is computed. So near each other, straight lines between lie at most 10 mJ above
+it, and 0.1 J in the centimetre in which it leaves zero. From where no leg touches the ground, they lie below."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,7 +87,6 @@ def study_card(
     trials = thinned(data.trials, always, most_rows)
     row_of = {int(trial): row for row, trial in enumerate(trials["trial"])}
     state = data.trials["state"]
-    feasible_kg = data.trials.loc[state == "feasible", "mass_kg"]
     foot_kg, foot_radius_m = _foot(data)
     cases = pd.DataFrame([case.design.as_array() for case in PAPER_CASES.values()], columns=list(NAMES))
     several = len(study.kits) > 1
@@ -134,7 +139,7 @@ def study_card(
         case_gearboxes=_gearboxes(cases, [(data.case_kit, np.arange(len(cases)))], places.maps, suffix=""),
         history=history_columns(data.history),
         weighted=[[weight, row_of[trial]] for weight, trial in weights],
-        floor_mass_kg=float(feasible_kg.min()) if len(feasible_kg) else None,
+        floor_j=_floor_j(data),
         foot_mass_kg=foot_kg,
         foot_radius_m=foot_radius_m,
         provenance=provenance(data),
@@ -168,6 +173,18 @@ def _body_masses_kg(data: StudyData, designs: pd.DataFrame) -> NDArray[np.float6
         values = designs.iloc[rows][list(NAMES)].to_numpy(dtype=np.float64)
         masses[rows] = robot_arrays(values, kit, data.calibration.mass).body_mass_kg
     return masses
+
+
+def _floor_j(data: StudyData) -> list[float]:
+    """Return the least energy of every design that jumped, at ``FLOOR_HEIGHTS_M``, rounded down."""
+    jumped = data.trials[data.trials["height_m"].notna()]
+    least = np.full(len(FLOOR_HEIGHTS_M), np.inf)
+    for kit, rows in data.kit_rows(jumped):
+        designs = jumped.iloc[rows][list(NAMES)].to_numpy(dtype=np.float64)
+        for some in np.array_split(designs, len(designs) // MOST_ROWS + 1):
+            robots = robot_arrays(some, kit, data.calibration.mass)
+            least = np.minimum(least, least_of_all_j(robots, data.calibration, np.array(FLOOR_HEIGHTS_M)))
+    return (np.floor(1e4 * least) / 1e4).tolist() if np.isfinite(least).all() else []
 
 
 def _with_alternatives(

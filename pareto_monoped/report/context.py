@@ -11,15 +11,14 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from pareto_monoped.config import Positive, Strict, checked, read_shipped
-from pareto_monoped.design import BASE_START_HEIGHT_M
 from pareto_monoped.report.front_figure import values
 from pareto_monoped.report.packing import unpacked_column
 from pareto_monoped.report.schema import Payload, StudyCard
 from pareto_monoped.report.tables import safe
 
 Words = Annotated[str, Field(min_length=1)]
-_WIDTH, _HEIGHT, _LEFT, _RIGHT, _TOP, _BOTTOM = 460, 330, 46, 14, 12, 40  # pixels of the chart and of its margins
-_MASSES_KG, _HEIGHTS_M = (0.005, 20.0), (0.1, 20.0)  # of its axes
+_WIDTH, _HEIGHT, _LEFT, _RIGHT, _TOP, _BOTTOM = 460, 415, 46, 14, 12, 40  # pixels of the chart and of its margins
+_MASSES_KG, _HEIGHTS_M = (0.005, 20.0), (0.02, 20.0)  # of its axes; lower rises stand at its end
 Box = tuple[float, float, float, float]  #: Left, right, top and bottom of a rectangle in the chart.
 
 
@@ -32,7 +31,7 @@ class Jumper(Strict):
     source: Words  #: where the values were looked up
     year: int | None = None  #: of the publication
     mass_kg: Positive | None = None  #: of all of it
-    height_m: Positive | None = None  #: gained in one jump from rest
+    height_m: Positive | None = None  #: gained in one jump from rest; of our own, the rise of the centre of mass
     agility_m_per_s: Positive | None = None  #: vertical jumping agility, as the measure of that name
 
 
@@ -52,14 +51,14 @@ def own_jumpers(payload: Payload) -> list[Jumper]:
     """Return the paper's Case C as simulated here, and the most agile, the knee and the highest of each front."""
     found = []
     for case in payload.studies[0].cases:
-        agility = case.measures.get("agility_m_per_s")
-        if case.name == "C" and case.height_m is not None and case.mass_kg is not None and agility is not None:
+        agility, rise = (case.measures.get(name) for name in ("agility_m_per_s", "rise_m"))
+        if case.name == "C" and case.mass_kg is not None and agility is not None and rise is not None:
             case_c = Jumper(
                 name="the paper's Case C, simulated here",
                 drive=f"one leg; {payload.studies[0].case_motor}",
                 source="this report",
                 mass_kg=float(case.mass_kg),
-                height_m=float(case.height_m) - BASE_START_HEIGHT_M,
+                height_m=float(rise),
                 agility_m_per_s=float(agility),
             )
             found.append(case_c)
@@ -78,16 +77,16 @@ def _places(card: StudyCard) -> dict[str, int]:
     rows = list(card.front)
     if not rows:
         return {}
-    agility = np.nan_to_num(_agilities_m_per_s(card)).tolist()
+    agility = np.nan_to_num(_of_front(card, "agility_m_per_s")).tolist()
     heights = [card.trials.columns["height_m"][row] or 0.0 for row in rows]
     places = {"most agile": agility.index(max(agility))} if max(agility) > 0.0 else {}
     places |= {picked.name: rows.index(picked.row) for picked in card.picks if picked.name == "knee"}
     return places | {"highest jump": heights.index(max(heights))}
 
 
-def _agilities_m_per_s(card: StudyCard) -> NDArray[np.float64]:
-    """Return agilities of the designs on the front, in its order; NaN where they are not known."""
-    name, rows = "agility_m_per_s", list(card.front)
+def _of_front(card: StudyCard, name: str) -> NDArray[np.float64]:
+    """Return a measure of the designs on the front, in its order; NaN where it is not known."""
+    rows = list(card.front)
     if name in card.trials.packed:
         return unpacked_column(card.trials.packed[name])[rows]
     return values(card.trials.columns.get(name, [None] * len(card.trials.trial)), rows)
@@ -95,19 +94,17 @@ def _agilities_m_per_s(card: StudyCard) -> NDArray[np.float64]:
 
 def _design(payload: Payload, card: StudyCard, place: int, what: str) -> Jumper:
     row, columns = card.front[place], card.trials.columns
-    height, mass = columns["height_m"][row], columns["mass_kg"][row]
-    starts = columns.get("start_height_m")
-    start = (starts[row] if starts is not None else None) or BASE_START_HEIGHT_M
+    mass = columns["mass_kg"][row]
     numbers = columns.get("motor")
     kit = payload.kits[card.kit if numbers is None else int(numbers[row] or 0)]
-    agility = _agilities_m_per_s(card)[place]
+    agility, rise = (_of_front(card, name)[place] for name in ("agility_m_per_s", "rise_m"))
     hip, knee = columns["hip_ratio"][row], columns["knee_ratio"][row]
     return Jumper(
         name=f"{what}, trial {card.trials.trial[row]}",
         drive=f"one leg; {kit.motor}, hip {hip:.1f}:1, knee {knee:.1f}:1",
         source="this report",
         mass_kg=None if mass is None else float(mass),
-        height_m=None if height is None or height <= start else float(height) - float(start),
+        height_m=float(rise) if rise > 0.0 else None,
         agility_m_per_s=float(agility) if agility > 0.0 else None,
     )
 
@@ -126,9 +123,11 @@ def context_section(payload: Payload) -> str:
     body = "".join(_row(jumper, ours, most, sources) for jumper, ours in everyone)
     words = (
         "Vertical jumping agility is the height gained in a jump over the time from the start of the push to the apex "
-        "(Haldane et al., Science Robotics, 2016). An empty cell: its source does not say. Robots that load a spring "
-        "before the jump are not comparable in agility, because loading takes time. Heights here are those of the base "
-        "above its start; published ones are those of the centre of mass or of an obstacle."
+        "(Haldane et al., Science Robotics, 2016); for the designs of this report, the height of the base. An empty "
+        "cell: its source does not say, or the study is older than the measure. Robots that load a spring before the "
+        "jump are not comparable in agility, because loading takes time. The height gained by a design of this report "
+        "is the rise of its centre of mass from lift-off to apex, without what the leg gains by standing up; published "
+        "heights are those of the centre of mass or of an obstacle."
     )
     return (
         f'<p class="small">{safe(words)}</p><div class="context-pair"><div>{_chart(own)}'
@@ -201,7 +200,7 @@ def _x(mass_kg: float) -> float:
 
 def _y(height_m: float) -> float:
     low, high = map(log10, _HEIGHTS_M)
-    return _HEIGHT - _BOTTOM - (log10(height_m) - low) / (high - low) * (_HEIGHT - _TOP - _BOTTOM)
+    return _HEIGHT - _BOTTOM - (max(log10(height_m), low) - low) / (high - low) * (_HEIGHT - _TOP - _BOTTOM)
 
 
 def _axes() -> str:
@@ -211,7 +210,7 @@ def _axes() -> str:
         x = _x(mass)
         parts.append(f'<line class="gridline" x1="{x:.1f}" x2="{x:.1f}" y1="{top}" y2="{bottom}"/>')
         parts.append(f'<text x="{x:.1f}" y="{bottom + 15}" text-anchor="middle">{mass:g}</text>')
-    for height in (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0):
+    for height in (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0):
         y = _y(height)
         parts.append(f'<line class="gridline" x1="{left}" x2="{right}" y1="{y:.1f}" y2="{y:.1f}"/>')
         parts.append(f'<text x="{left - 5}" y="{y + 4:.1f}" text-anchor="end">{height:g}</text>')

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
+from pareto_monoped.design import BASE_START_HEIGHT_M
 from pareto_monoped.measures import ENERGIES, measure
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.report.schema import Column, Payload, StudyCard
@@ -141,10 +141,11 @@ def _diamonds(axes: Any, marks: Sequence[Mark], fill: str, label: str) -> None:
 
 
 def _floor(axes: Any, payload: Payload, energy_j: float) -> None:
-    """Draw the height to which an energy raises the lightest robot, from 0 to ``energy_j``."""
-    masses = [card.floor_mass_kg for card in payload.studies if card.floor_mass_kg is not None]
-    if not masses:
+    """Draw the least energy of each height over the designs of all studies, up to ``energy_j``."""
+    floors = [card.floor_j for card in payload.studies if card.floor_j]
+    if not floors:
         return
-    ends = np.array([0.0, energy_j])
-    heights = BASE_START_HEIGHT_M + ends / (min(masses) * GRAVITY_M_PER_S2)
-    axes.plot(ends, heights, ":", color="black", lw=0.8, label=f"m g (H - {BASE_START_HEIGHT_M:g} m)")
+    least = np.min(floors, axis=0)
+    shown = slice(max(int((least == 0.0).sum()) - 1, 0), int(np.searchsorted(least, energy_j)) + 1)
+    heights = payload.constants.floor_heights_m[shown]
+    axes.plot(least[shown], heights, ":", color="black", lw=0.8, label="physical floor")

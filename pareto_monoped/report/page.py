@@ -21,7 +21,7 @@ from pareto_monoped.files import write_text
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.measures import ENERGIES, MEASURES, measure
 from pareto_monoped.pareto.objectives import Objectives
-from pareto_monoped.report.card import HEADLINES_M, MapPlace, Places, Source, study_card
+from pareto_monoped.report.card import FLOOR_HEIGHTS_M, HEADLINES_M, MapPlace, Places, Source, study_card
 from pareto_monoped.report.comparison import compare
 from pareto_monoped.report.context import context_section
 from pareto_monoped.report.exports import read_models
@@ -113,6 +113,7 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
         constants=Constants(
             gravity_m_per_s2=GRAVITY_M_PER_S2,
             base_start_height_m=BASE_START_HEIGHT_M,
+            floor_heights_m=FLOOR_HEIGHTS_M,
             published_link_kg=PUBLISHED_LINK_KG,
             published_link_kg_per_m=PUBLISHED_LINK_KG_PER_M,
         ),

@@ -253,7 +253,8 @@ class StudyCard:
     case_gearboxes: Mapping[str, Sequence[int]]
     history: Mapping[str, Column]
     weighted: Sequence[Sequence[float]]  #: results of a weighted search: weight of the first objective, and row
-    floor_mass_kg: Number  #: mass of the lightest feasible robot, for the physical floor m g (H - 0.5 m)
+    #: Energy below which no design that jumped can reach each of ``Constants.floor_heights_m``; empty without jumps
+    floor_j: Sequence[float]
     foot_mass_kg: float
     foot_radius_m: float
     provenance: Sequence[Sequence[str]]
@@ -291,6 +292,7 @@ class Constants:
     #: gravity_m_per_s2, base_start_height_m: for work against gravity, m g (H - start height)
     gravity_m_per_s2: float
     base_start_height_m: float
+    floor_heights_m: Sequence[float]  #: of ``StudyCard.floor_j``
     #: published_link_kg, published_link_kg_per_m: straight line of link mass over link length
     published_link_kg: float
     published_link_kg_per_m: float

@@ -44,7 +44,22 @@ def sentences(data: StudyData, front: pd.DataFrame, cases: Sequence[Case]) -> li
             f"from {low['height_m']:.2f} m on {low['energy_j']:.1f} J "
             f"to {high['height_m']:.2f} m on {high['energy_j']:.1f} J."
         ]
+    lines += _standing_up(front) if "height_m" in objectives.names else []
     return [*lines, *(_against_paper(front, cases) if objectives == HEIGHT_AND_ENERGY else [])]
+
+
+def _standing_up(front: pd.DataFrame) -> list[str]:
+    """Return how much of the heights at both ends of the front is standing up; empty for a study that lacks it."""
+    ends = front.loc[[front["height_m"].idxmin(), front["height_m"].idxmax()]]
+    height, above, rise = (ends[name].astype(float).tolist() for name in ("height_m", "above_standing_m", "rise_m"))
+    if ends[["above_standing_m", "rise_m"]].isna().any(axis=None):
+        return []
+    low, high = (min(whole, whole - more) for whole, more in zip(height, above, strict=True))
+    return [
+        "Heights count from the floor to the base, as in the paper, so most of a height is standing up on a straight "
+        f"leg: {low:.2f} m of the lowest, {height[0]:.2f} m, and {high:.2f} m of the highest, {height[1]:.2f} m. Their "
+        f"centres of mass rise by {rise[0]:.2f} m and {rise[1]:.2f} m after lift-off."
+    ]
 
 
 def _extent(front: pd.DataFrame, objectives: Objectives) -> str:

@@ -1,5 +1,6 @@
 from types import SimpleNamespace
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -19,8 +20,13 @@ def simulated():
 
 
 def study(*front, motors=("U8",)):
-    """A study with this front of trial, height and energy, all with the last motor."""
+    """A study with this front of trial, height and energy, all with the last motor.
+
+    Each rises by a third of its height, and half of that above standing; of trial 9 that is not known.
+    """
     table = pd.DataFrame(front, columns=["trial", "height_m", "energy_j"]).assign(motor=motors[-1])
+    table["rise_m"] = (table["height_m"] / 3.0).where(table["trial"] != 9)
+    table["above_standing_m"] = table["rise_m"] / 2.0
     return SimpleNamespace(
         front=lambda: table,
         study=SimpleNamespace(objectives=HEIGHT_AND_ENERGY, kits=[(name, name) for name in motors]),
@@ -38,6 +44,16 @@ def test_the_papers_design_stands_beside_the_fronts(simulated):
         ("front: at least that height, trial 3", height + 0.01, 30.0),
         ("front: knee, trial 7", 0.7, 10.0),
     ]
+    rises = [(row.rise_m, row.above_standing_m) for row in rows]
+    assert np.isnan(rises[0]).all()
+    assert rises[1] == (simulated["rise_m"], simulated["above_standing_m"])
+    assert rises[3] == (0.7 / 3.0, 0.7 / 6.0)
+
+
+def test_a_study_without_rises_has_the_same_lines(simulated):
+    rows = headline(study((7, 0.7, 10.0), (9, simulated["height_m"] + 0.1, 50.0)), 7)
+    assert [row.label for row in rows[2:]] == ["front: at least that height, trial 9", "front: knee, trial 7"]
+    assert np.isnan(rows[2].rise_m)
 
 
 def test_a_front_below_the_papers_height_has_no_design_for_it():

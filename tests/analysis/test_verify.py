@@ -134,6 +134,17 @@ def test_an_infinite_number_of_the_history_is_refused_when_read(path, column):
             read(path)
 
 
+def test_a_measure_that_came_after_the_first_trials_is_not_missed_in_them(path):
+    """A study of an earlier version that goes on has it in its later trials only."""
+    change(path, "UPDATE monoped_trials SET rise_m = NULL WHERE trial < 8")
+    reseal(path)
+    assert verify(path, simulate=100).findings == ()
+    change(path, "UPDATE monoped_trials SET rise_m = NULL WHERE trial = 11")
+    reseal(path)
+    (found,) = verify(path, simulate=100).findings
+    assert found.startswith("trial 11 jumps otherwise: its rise_m is nan, again ")
+
+
 def test_a_jump_that_differs_is_found(path):
     """Values that look right, in Optuna's tables too; of 50 trials, 50 are simulated again."""
     data = read_study(path)

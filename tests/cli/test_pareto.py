@@ -11,10 +11,15 @@ from pathlib import Path
 
 import pytest
 
+from pareto_monoped.actuator.search import map_for
 from pareto_monoped.analysis.choices import HEIGHTS_M, two_fronts
 from pareto_monoped.cli.pareto import _newer
+from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.gravity import standing_height_m
 from pareto_monoped.pareto.pick import pick
 from pareto_monoped.pareto.selectors import Knee
+from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.storage.reader import read_study
 
 ROOT = Path(__file__).parents[2]
@@ -58,6 +63,11 @@ class TestMainJob:
         assert "as published" in done.stdout
         assert "0.800" in done.stdout
         assert "15.36" in done.stdout
+        (case,) = (line.split()[-4:] for line in done.stdout.splitlines() if "simulated here" in line)
+        height, _, stands, rise = map(float, case)
+        robot = robot_arrays(PAPER_CASES["C"].design.as_array(), map_for("VT8020"))
+        assert stands == pytest.approx(standing_height_m(robot, load_calibration())[0], abs=6e-4)
+        assert 0.2 < rise < height - 0.7
         assert all(len(line) <= 80 for line in done.stdout.splitlines())
         assert "Traceback" not in done.stderr
 

@@ -4,8 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from pareto_monoped.design import VARIABLES
-from pareto_monoped.report.card import MapPlace, Places, best_of_weights, study_card
+from pareto_monoped.design import NAMES, VARIABLES
+from pareto_monoped.jump.gravity import least_energy_j, least_of_all_j
+from pareto_monoped.report.card import FLOOR_HEIGHTS_M, MapPlace, Places, _floor_j, best_of_weights, study_card
+from pareto_monoped.report.trials import MOST_ROWS
+from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.storage.reader import read_study
 
 PLACES = Places(maps={"VT8020": MapPlace(number=0, first_gearbox=0)}, kits={"VT8020": 0})
@@ -58,7 +61,39 @@ def test_the_card_counts_states_and_reasons_of_failure(source):
     assert card.counts == {"feasible": len(trials) - 5, "infeasible": 2, "failed": 3, "total": len(trials)}
     assert card.reasons == {"no_take_off": 2, "no_gearbox": 1}
     assert card.trials.state[:6] == "xxxiif"
-    assert card.floor_mass_kg == trials["mass_kg"].iloc[5:].min()
+
+
+def test_no_trial_lies_below_the_floor_and_the_floor_is_that_of_some_design(data, payload):
+    (card,) = payload.studies
+    heights, trials = np.array(FLOOR_HEIGHTS_M), data.trials[data.trials["height_m"].notna()]
+    assert (trials["energy_j"] > np.interp(trials["height_m"], heights, card.floor_j)).all()
+    robots = robot_arrays(trials[list(NAMES)].to_numpy(dtype=float), data.case_kit, data.calibration.mass)
+    for height in (0.56, 0.9, 1.2):
+        each = least_energy_j(robots, data.calibration, np.full(len(trials), height))
+        assert card.floor_j[FLOOR_HEIGHTS_M.index(height)] == pytest.approx(each.min(), abs=1.1e-4)
+
+
+def test_a_floor_of_more_trials_than_are_searched_at_once_is_that_of_all(data, payload):
+    repeated = data.trials.iloc[np.repeat(np.arange(len(data.trials)), MOST_ROWS // len(data.trials) + 1)]
+    many = replace(data, trials=repeated.sort_values("mass_kg", ignore_index=True))
+    assert _floor_j(many) == payload.studies[0].floor_j
+
+
+def test_lines_between_the_heights_of_a_floor_stay_near_it(data):
+    trials = data.trials[data.trials["height_m"].notna()]
+    robots = robot_arrays(trials[list(NAMES)].to_numpy(dtype=float), data.case_kit, data.calibration.mass)
+    heights = np.arange(0.3625, 9.0, 0.0025)
+    floor = least_of_all_j(robots, data.calibration, np.array(FLOOR_HEIGHTS_M))
+    above = np.interp(heights, FLOOR_HEIGHTS_M, floor) - least_of_all_j(robots, data.calibration, heights)
+    leaves = FLOOR_HEIGHTS_M[np.flatnonzero(floor == 0.0)[-1]]
+    assert above.max() < 0.1
+    assert above[(heights < leaves) | (heights > leaves + 0.01)].max() < 0.01
+
+
+def test_a_study_in_which_nothing_jumped_has_no_floor(source):
+    trials = source.data.trials.assign(height_m=np.nan, state="failed")
+    data = replace(source.data, trials=trials)
+    assert study_card(replace(source, data=data), "label", len(trials), PLACES, VARIABLES).floor_j == []
 
 
 def test_bounds_foot_and_gearboxes_are_the_studys(payload, data):

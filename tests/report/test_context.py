@@ -8,6 +8,7 @@ import pytest
 from pareto_monoped.config import checked
 from pareto_monoped.errors import InputError
 from pareto_monoped.report.context import (
+    _BOTTOM,
     _HEIGHT,
     _WIDTH,
     Jumper,
@@ -40,17 +41,18 @@ def test_agility_and_height_are_those_of_the_front(payload, data):
     assert agile.agility_m_per_s == pytest.approx((most["height_m"] - 0.5) / most["apex_s"], rel=1e-3)
     assert agile.mass_kg == pytest.approx(most["mass_kg"], rel=1e-3)
     highest = next(jumper for name, jumper in own.items() if "highest jump" in name)
-    assert highest.height_m == pytest.approx(front["height_m"].max() - 0.5, abs=1e-4)
+    assert highest.height_m == pytest.approx(front.loc[front["height_m"].idxmax(), "rise_m"], rel=1e-3)
     (case,) = (case for case in payload.studies[0].cases if case.name == "C")
-    assert own["the paper's Case C, simulated here"].height_m == pytest.approx(case.height_m - 0.5)
+    assert own["the paper's Case C, simulated here"].height_m == case.measures["rise_m"] < case.height_m - 0.7
 
 
-def test_a_study_without_agilities_says_so_by_empty_cells(payload):
+def test_a_study_without_agilities_and_rises_says_so_by_empty_cells(payload):
     (card,) = payload.studies
-    without = {name: text for name, text in card.trials.packed.items() if name != "agility_m_per_s"}
+    without = {name: text for name, text in card.trials.packed.items() if name not in ("agility_m_per_s", "rise_m")}
     bare = replace(payload, studies=[replace(card, trials=replace(card.trials, packed=without))])
     names = [jumper.name for jumper in own_jumpers(bare)]
     assert not any("agile" in name for name in names)
+    assert {jumper.height_m for jumper in own_jumpers(bare)[1:]} == {None}
     assert "<tr" in context_section(bare)
 
 
@@ -63,6 +65,12 @@ def test_the_table_goes_from_the_most_agile_down_and_numbers_its_sources(payload
     sources = re.findall(r"<li>(.*?)</li>", text)
     assert max(map(int, numbers)) == len(sources)
     assert len(numbers) == len(published_jumpers())
+
+
+def test_a_design_that_hardly_rises_stays_in_the_chart(payload):
+    jumpers = [Jumper(name="a", drive="b", source="c", mass_kg=5.0, height_m=rise) for rise in (0.001, 0.06, 0.4)]
+    low, middle, high = map(float, re.findall(r'class="ours" d="M[\d.]+ ([\d.]+)l', _chart(jumpers)))
+    assert high + 6.0 < middle + 6.0 < low + 6.0 <= _HEIGHT - _BOTTOM
 
 
 def test_names_of_points_cover_neither_points_nor_each_other(payload):

@@ -84,9 +84,11 @@ def test_the_front_figure_shows_front_cases_and_floor(front_axes, payload, data)
     np.testing.assert_allclose(lines["paper, simulated here"], [(c.energy_j, c.height_m) for c in card.cases])
     published = [(case.energy_j, case.height_m) for case in PAPER_CASES.values()]
     np.testing.assert_allclose(lines["paper, published"], published)
-    (_, low), (energy, height) = lines["m g (H - 0.5 m)"]
-    assert low == 0.5
-    assert height == pytest.approx(0.5 + energy / (card.floor_mass_kg * 9.81))
+    energies, heights = lines["physical floor"].T
+    np.testing.assert_allclose(energies, np.interp(heights, payload.constants.floor_heights_m, card.floor_j))
+    assert energies[0] == 0.0
+    assert energies[1] > 0.0
+    assert energies[-1] > front_axes.get_xlim()[1]
     dominated = front_axes.collections[0].get_offsets()
     assert len(dominated) == card.counts["feasible"] - len(card.front)
 
@@ -101,13 +103,14 @@ def test_the_front_figure_begins_at_the_start_height_and_holds_every_mark(front_
     assert front_axes.get_ylim() == pytest.approx((0.5, max(heights) + 0.06))
 
 
-def test_the_floor_is_that_of_the_lightest_robot_of_all_studies(payload):
+def test_the_floor_is_the_least_of_all_studies(payload):
     (card,) = payload.studies
     figure = Figure()
-    front_figure(replace(payload, studies=[card, replace(card, floor_mass_kg=0.5 * card.floor_mass_kg)]), figure)
-    (floor,) = (line for line in figure.axes[0].lines if line.get_label().startswith("m g"))
-    energy, height = (values[1] for values in floor.get_data())
-    assert height == pytest.approx(0.5 + energy / (0.5 * card.floor_mass_kg * 9.81))
+    lower = [max(energy - 1.0, 0.0) for energy in card.floor_j]
+    front_figure(replace(payload, studies=[card, replace(card, floor_j=lower), replace(card, floor_j=[])]), figure)
+    (floor,) = (line for line in figure.axes[0].lines if line.get_label().startswith("physical"))
+    energies, heights = floor.get_data()
+    np.testing.assert_allclose(energies, np.interp(heights, payload.constants.floor_heights_m, lower))
 
 
 def test_states_over_time_are_those_of_the_knees_jump(payload):

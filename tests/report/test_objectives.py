@@ -69,7 +69,8 @@ def test_its_words_name_the_objectives(three):
     text = head(build([three]))
     data = three.data
     front = data.front()
-    (sentence,) = sentences(data, front, [])
+    sentence, standing = sentences(data, front, [])
+    assert "standing up" in standing
     for name in THREE:
         entry = measure(name)
         assert f"{entry.label} ({entry.text(front[name].min())} to {entry.text(front[name].max())})" in sentence

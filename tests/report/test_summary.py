@@ -16,7 +16,7 @@ def front_of(data, points):
 def test_the_sentence_gives_the_price_of_the_headline_height(data, resimulation):
     case = replace(next(c for c in resimulation.cases if c.name == "C"), height_m=0.9, energy_j=40.0)
     front = front_of(data, [(0.7, 12.0), (0.85, 20.0), (0.95, 30.0)])
-    first, second = sentences(data, front, [case])
+    first, _, second = sentences(data, front, [case])
     assert first.startswith("0.80 m costs at least 20.0 J; the front of 3 designs runs from 0.70 m on 12.0 J")
     assert "published: 0.80 m on 15.4 J" in second
     assert "reaches 0.90 m on 40.0 J" in second
@@ -28,7 +28,17 @@ def test_the_sentence_gives_the_price_of_the_headline_height(data, resimulation)
 )
 def test_the_papers_case_may_be_out_of_reach(data, resimulation, height, words):
     case = replace(next(c for c in resimulation.cases if c.name == "C"), height_m=height, energy_j=40.0, reason="why")
-    assert words in sentences(data, front_of(data, [(0.7, 12.0), (0.95, 30.0)]), [case])[1]
+    assert words in sentences(data, front_of(data, [(0.7, 12.0), (0.95, 30.0)]), [case])[2]
+
+
+def test_a_sentence_says_how_much_of_a_height_is_standing_up(data, resimulation):
+    front = front_of(data, [(0.7, 12.0), (0.85, 20.0), (0.95, 30.0)])
+    front["above_standing_m"], front["rise_m"] = [-0.02, 0.1, 0.151], [0.03, 0.2, 0.249]
+    sentence = sentences(data, front, resimulation.cases)[1]
+    assert "standing up on a straight leg: 0.70 m of the lowest, 0.70 m, and 0.80 m of the highest, 0.95 m" in sentence
+    assert sentence.endswith("Their centres of mass rise by 0.03 m and 0.25 m after lift-off.")
+    older = front.assign(rise_m=np.nan)
+    assert not any("standing up" in line for line in sentences(data, older, resimulation.cases))
 
 
 def test_a_low_front_says_how_high_it_gets(data, resimulation):

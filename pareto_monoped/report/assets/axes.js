@@ -110,19 +110,15 @@ const SYMBOLS = {
 function startSwitches() {
   const names = {
     front: "front", cloud: "dominated", infeasible: "infeasible", published: "paper, as published",
-    simulated: "paper, simulated here", picks: "knee", floor: `floor m g (H − ${START_HEIGHT} m)`,
+    simulated: "paper, simulated here", picks: "knee", floor: "floor: least rise of potential energy",
     ...(hasRobust() ? { spread: "spread under uncertainty, 5 to 95 %", robust: "robust front" } : {}),
   };
   const box = byId("switches");
-  const mass = page.studies.map((s) => s.floor_mass_kg).filter((m) => m !== null);
   for (const [key, words] of Object.entries(names)) {
     const symbol = draw("svg", { width: 14, height: 14, "aria-hidden": "true" });
     symbol.innerHTML = SYMBOLS[key]; // constant text from above
     const label = switchOf({ "data-show": key }, symbol, words, "layers", () => state.layers[key], (shown) => showLayer(key, shown));
-    if (key === "floor" && mass.length) {
-      label.append(` of the lightest robot, ${round(Math.min(...mass), 2)} kg`);
-      label.title = "The work of lifting that robot's weight. A leg that stretches in flight rises a little less than the base.";
-    }
+    if (key === "floor") label.title = "No design that jumped in these studies can reach a height on less, whatever its controller: the least rise of potential energy from its start to any pose with the base there, with the foot above the ground and the joints between their stops, less what the foot's spring gives back. Losses and all motion at the apex come on top.";
     box.append(label);
   }
   if (page.studies.length < 2) return;

@@ -113,13 +113,13 @@ function cloudLayers(study) {
   return list;
 }
 
+// The least energy of each height over the designs of all studies in sight, from the last height that needs none.
 function floorLayer() {
-  const masses = [...state.visible].map((i) => page.studies[i].floor_mass_kg).filter((m) => m !== null);
-  if (!masses.length || !hasFloor() || !state.layers.floor || state.axes.space) return [];
-  const mass = Math.min(...masses), end = 4 * homeRange("x")[1];
-  const x = kindOf("x") === "log" || kindOf("y") === "log" ? Array.from({ length: 80 }, (_, i) => end * 10 ** (i / 20 - 4)) : [0, end];
-  const lift = (e) => START_HEIGHT + e / (mass * GRAVITY);
-  return [{ name: "floor", mode: "lines", x, y: x.map(lift), line: { color: colour("faint"), width: 1.5, dash: "dot" } }];
+  const floors = [...state.visible].map((i) => page.studies[i].floor_j).filter((floor) => floor.length);
+  if (!floors.length || !hasFloor() || !state.layers.floor || state.axes.space) return [];
+  const least = page.constants.floor_heights_m.map((_, i) => Math.min(...floors.map((floor) => floor[i])));
+  const first = Math.max(least.lastIndexOf(0), 0);
+  return [{ name: "floor", mode: "lines", x: least.slice(first), y: page.constants.floor_heights_m.slice(first), line: { color: colour("faint"), width: 1.5, dash: "dot" } }];
 }
 
 function frontLayers(study) {
