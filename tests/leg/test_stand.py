@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import shapely
 from shapely import Polygon
 from shapely.geometry import Point
 
@@ -12,7 +13,7 @@ from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle
 from pareto_monoped.leg.base import base_parts
 from pareto_monoped.leg.dimensions import leg_dimensions
-from pareto_monoped.leg.sandwich import rounded_hull
+from pareto_monoped.leg.sandwich import _corners, rounded_hull
 from pareto_monoped.leg.stand import (
     ARM_MM,
     MGN12H,
@@ -85,3 +86,18 @@ def test_screws_reach_their_threads_and_not_through(leg):
     for where, length in lengths.items():
         grip = ARM_MM + (leg.cheek_mm if "near" in where else leg.far_cheek_mm) + (2.0 if "upper" in where else 0.0)
         assert 6.0 <= length - grip <= 10.0
+
+
+def test_the_corners_of_a_hull_are_shapely_s():
+    """Anticlockwise from the lowest; points inside, on a side, or there twice are no corners."""
+    generator = np.random.default_rng(3)
+    for count in (3, 4, 7, 12):
+        points = [tuple(point) for point in generator.integers(-9, 10, (count, 2)).astype(float)]
+        wanted = shapely.MultiPoint(points).convex_hull.normalize()
+        if wanted.geom_type != "Polygon":
+            continue
+        corners = _corners([*points, points[0]])
+        assert shapely.Polygon(corners).normalize().equals(wanted)
+        assert len(corners) == len(wanted.exterior.coords) - 1
+        assert shapely.LinearRing(corners).is_ccw
+        assert corners[0] == min(corners, key=lambda corner: (corner[1], corner[0]))

@@ -1,8 +1,7 @@
 import pytest
 
-from pareto_monoped.cad.check import free_motion, gear_mesh, overlap, retention, screws, watertight
+from pareto_monoped.cad.check import free_motion, gear_mesh, making, overlap, retention, run, screws, watertight
 from pareto_monoped.cad.check.overlap import PlacedMesh
-from pareto_monoped.cad.check.run import run_checks
 from pareto_monoped.cad.product import Product
 from pareto_monoped.cad.write import files
 from pareto_monoped.cad.write.meshes import visuals
@@ -76,7 +75,7 @@ def examine(product, arrays, part_files, other_files):
 
         return check
 
-    def run(product=product, arrays=arrays, part_files=part_files, other_files=other_files):
+    def examined(product=product, arrays=arrays, part_files=part_files, other_files=other_files):
         with pytest.MonkeyPatch.context() as patch:
             for module, *names in (
                 (overlap, "check"),
@@ -84,14 +83,16 @@ def examine(product, arrays, part_files, other_files):
                 (gear_mesh, "check"),
                 (screws, "check_bolts", "check_seats"),
                 (retention, "check"),
+                (making, "check"),
+                (run, "check_chains"),
                 (watertight, "check"),
             ):
                 for name in names:
                     patch.setattr(module, name, kept(module, name))
-            checks = run_checks(product, arrays, part_files=part_files, other_files=other_files)
+            checks = run.run_checks(product, arrays, part_files=part_files, other_files=other_files)
         return {check.name: check for check in checks}
 
-    return run
+    return examined
 
 
 @pytest.fixture(scope="session")
