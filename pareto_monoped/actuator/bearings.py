@@ -194,6 +194,9 @@ def main_bearing(bore_mm: Numbers, model: Literal["catalogue", "regression"] = "
 _WIDTH_BORES_MM = np.array([50.0, 80.0, 120.0, 180.0])
 _WIDTH_LESS_MM = np.array([0.12, 0.15, 0.2, 0.25])
 """By how much a ring may be narrower, up to these bores (ISO 492, normal class)."""
+_BORES_MM = np.array([18.0, 30.0, 50.0, 80.0, 120.0, 180.0])
+_BORE_LESS_MM = np.array([0.008, 0.010, 0.012, 0.015, 0.020, 0.025])
+"""By how much the mean bore may be smaller, up to these bores (ISO 492, normal class)."""
 _CLEARANCE_BORES_MM = np.array([10.0, 18.0, 24.0, 30.0, 40.0, 50.0, 65.0, 80.0, 100.0, 120.0, 140.0, 160.0])
 _CLEARANCE_UM = np.array(
     [
@@ -212,6 +215,11 @@ def width_less_mm(bore_mm: Numbers) -> Numbers:
     """Return by how much a ball bearing may be narrower than its nominal width (ISO 492, normal class)."""
     less: Numbers = _WIDTH_LESS_MM[np.minimum(np.searchsorted(_WIDTH_BORES_MM, bore_mm), len(_WIDTH_LESS_MM) - 1)]
     return less
+
+
+def bore_less_mm(bore_mm: float) -> float:
+    """Return by how much the mean bore of a ball bearing may be smaller than nominal (ISO 492, normal class)."""
+    return float(_BORE_LESS_MM[min(int(np.searchsorted(_BORES_MM, bore_mm)), len(_BORE_LESS_MM) - 1)])
 
 
 def clearance_mm(bore_mm: float) -> tuple[float, float]:
@@ -340,10 +348,10 @@ def bearing_width(bearing: Bearing, z_front_mm: Numbers) -> Length:
     return Length(name="width", z0_mm=z_front_mm - bearing.width_mm, z1_mm=z_front_mm, lower_mm=-less_mm, upper_mm=0.0)
 
 
-def ring_lengths(ring: RetainingRing, z0_mm: Numbers) -> tuple[Length, ...]:
+def ring_thickness(ring: RetainingRing, z0_mm: Numbers) -> Length:
     """Return the thickness of a retaining ring with its limits (h11, DIN 471 and DIN 472)."""
     less_mm = np.where(ring.thickness_mm <= 1.75, 0.06, np.where(ring.thickness_mm <= 2.5, 0.07, 0.08))[()]
-    return (Length(name="thickness", z0_mm=z0_mm, z1_mm=z0_mm + ring.thickness_mm, lower_mm=-less_mm, upper_mm=0.0),)
+    return Length(name="thickness", z0_mm=z0_mm, z1_mm=z0_mm + ring.thickness_mm, lower_mm=-less_mm, upper_mm=0.0)
 
 
 def groove(z0_mm: Numbers, ring: RetainingRing) -> Length:

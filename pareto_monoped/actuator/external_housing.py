@@ -1,6 +1,6 @@
 """The housing of the ESSPG: ring housing in front, casing around the motor, backplate, and what holds them together."""
 
-from pareto_monoped.actuator.bearings import groove, ring_lengths
+from pareto_monoped.actuator.bearings import groove, ring_thickness
 from pareto_monoped.actuator.features import (
     MOTOR_CLEARANCE_HOLE_MM,
     SPIGOT_MM,
@@ -96,7 +96,7 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
             visibility=Visibility.INSIDE,
             material=materials.steel,
             prisms=tube(z_groove_back, at.z_bearing_back, ring.r_groove, ring.r_free),
-            lengths=ring_lengths(ring, z_groove_back),
+            lengths=(ring_thickness(ring, z_groove_back),),
             group=Group.HOUSING,
             catalogue_mass_kg=ring.mass_kg,
             note=ring.name and f"{ring.name}, in the ring housing's groove behind the main bearing",

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from pareto_monoped.actuator.bearings import groove, ring_lengths
+from pareto_monoped.actuator.bearings import groove, ring_thickness
 from pareto_monoped.actuator.features import (
     bought_bearing,
     gear_note,
@@ -295,7 +295,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             visibility=Visibility.INSIDE,
             material=materials.steel,
             prisms=tube(at.z_bearing_front, z_ring, ring.r_free, ring.r_groove),
-            lengths=ring_lengths(ring, at.z_bearing_front),
+            lengths=(ring_thickness(ring, at.z_bearing_front),),
             group=Group.OUTPUT,
             catalogue_mass_kg=ring.mass_kg,
             note=ring.name and f"{ring.name}, in the carrier's groove before the main bearing",

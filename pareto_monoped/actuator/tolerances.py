@@ -9,28 +9,25 @@ from functools import partial
 import numpy as np
 
 from pareto_monoped.actuator.actuator import Actuator
-from pareto_monoped.actuator.bearings import axial_play_mm, clearance_mm, rated_bearing
-from pareto_monoped.actuator.gearset import PIN_PLACE_MM, GearSet
+from pareto_monoped.actuator.bearings import axial_play_mm, bore_less_mm, clearance_mm, rated_bearing
+from pareto_monoped.actuator.gearset import PIN_PLACE_MM
 from pareto_monoped.actuator.layout import NECK_PLAY_MM, NECK_WITHIN_MM
 from pareto_monoped.actuator.rating.load import runout_um
 from pareto_monoped.geometry.chains import Chain, Link
 from pareto_monoped.geometry.making import GENERAL_SERIES, RATED_SERIES, limits, thickness_tolerance_mm
 from pareto_monoped.geometry.parts import Part
-from pareto_monoped.geometry.shapes import Circle, Numbers
+from pareto_monoped.geometry.shapes import Circle
 
 _TURNING_MM = 0.05
 """Least gap between what turns and what stands still, and least float of the planets; our own choice."""
 _FIT_SHARE = 0.85
 """Of an interference that a bearing's clearance loses: handbooks give 0.8 to 0.9 (Harris, ch. 3)."""
-_BORES_MM = np.array([18.0, 30.0, 50.0, 80.0, 120.0, 180.0])
-_BORE_LESS_MM = np.array([0.008, 0.010, 0.012, 0.015, 0.020, 0.025])
-"""By how much the mean bore of a bearing may be smaller, up to these bores (ISO 492, normal class)."""
 _GENERAL_CLASS = 8
 """Accuracy of teeth that are not rated, as their drawings have it."""
 _SEAT_OFF_MM = 0.01
 """By how much the sun's end bearing may be off the carrier's axis: half the zone of the seats' coaxiality."""
 _DOWEL_MM = 0.2
-"""By how much less than that a dowel may stand out; our own choice."""
+"""By how much less than drawn a dowel may stand out; our own choice."""
 _CENTRED_MM = 0.005
 """By how much a ring is off the planets' common axis that was bonded while they turned in it; our own choice."""
 
@@ -207,14 +204,7 @@ def _planet_from_shoulder(sums: _Sums) -> Link:
 
 def _rotor_chains(sums: _Sums, actuator: Actuator) -> tuple[Chain, ...]:
     """Return the gaps between rotor and carriers, and between rotor and housing."""
-    neck = Link(
-        part="sun",
-        name="neck, set when bonded",
-        sign=1.0,
-        nominal_mm=NECK_PLAY_MM,
-        lower_mm=-NECK_WITHIN_MM,
-        upper_mm=NECK_WITHIN_MM,
-    )
+    neck = Link.about("sun", "neck, set when bonded", NECK_WITHIN_MM, nominal_mm=NECK_PLAY_MM, sign=1.0)
     chains = [
         Chain(name="sun's neck to its end bearing", links=(neck,), least_mm=_TURNING_MM, cure="bond it farther back")
     ]
@@ -300,7 +290,6 @@ def _clearances(sums: _Sums) -> tuple[Chain, ...]:
             continue
         bore = 2.0 * sums.radii_mm(name)[0]
         low, high = clearance_mm(bore)
-        less = float(_BORE_LESS_MM[min(int(np.searchsorted(_BORES_MM, bore)), len(_BORE_LESS_MM) - 1)])
         shaft = limits(bore, "h6")
         of = partial(Link, part=name, nominal_mm=0.0)
         chains.append(
@@ -308,17 +297,13 @@ def _clearances(sums: _Sums) -> tuple[Chain, ...]:
                 name=f"running clearance of the {name.replace('_', ' ')}",
                 links=(
                     of(name="radial clearance", sign=1.0, lower_mm=low, upper_mm=high),
-                    of(name="bore", sign=_FIT_SHARE, lower_mm=-less, upper_mm=0.0),
+                    of(name="bore", sign=_FIT_SHARE, lower_mm=-bore_less_mm(bore), upper_mm=0.0),
                     of(name="shaft", sign=-_FIT_SHARE, lower_mm=shaft.lower_mm, upper_mm=shaft.upper_mm),
                 ),
                 cure="take a bearing of more clearance",
             )
         )
     return tuple(chains)
-
-
-def _general_runout_um(pitch_mm: float, gears: GearSet) -> Numbers:
-    return runout_um(pitch_mm, gears.module_mm, _GENERAL_CLASS)
 
 
 def _backlash(sums: _Sums, actuator: Actuator) -> tuple[Chain, ...]:
@@ -330,12 +315,12 @@ def _backlash(sums: _Sums, actuator: Actuator) -> tuple[Chain, ...]:
         return Link(part=part, name="thinning of teeth", sign=1.0, nominal_mm=thinned_mm, lower_mm=0.0, upper_mm=most)
 
     def off(part: str, name: str, slope: float, within_mm: float) -> Link:
-        return Link(part=part, name=name, sign=slope, nominal_mm=0.0, lower_mm=-within_mm, upper_mm=within_mm)
+        return Link.about(part, name, within_mm, sign=slope)
 
     def eccentric(part: str, slope: float, pitch_mm: float) -> Link:
         made = sums.parts[part].teeth[:1]  # the first are those of the gear itself
-        runout = made[0].runout_mm if made and made[0].runout_mm else 1e-3 * float(_general_runout_um(pitch_mm, gears))
-        return off(part, "eccentricity", slope, 0.5 * runout)
+        general_mm = 1e-3 * float(runout_um(pitch_mm, gears.module_mm, _GENERAL_CLASS))
+        return off(part, "eccentricity", slope, 0.5 * (made[0].runout_mm if made and made[0].runout_mm else general_mm))
 
     sun, planet, ring = (2.0 * float(one.pitch_radius_mm) for one in (gears.sun(), gears.planet(), gears.ring()))
     thin = [float(one.backlash_mm) for one in (gears.sun(), gears.planet(), gears.ring())]

@@ -5,12 +5,9 @@ sum of all limits. For its spread, each length lies evenly anywhere between its 
 pessimistic than the normal distributions that handbooks take (our own choice; nothing is known of the workshop).
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-
-from pareto_monoped.geometry.shapes import Floats
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,10 +22,13 @@ class Link:
     upper_mm: float
     which: int = 0  #: tells instances of one part apart, whose deviations differ
 
-    @property
-    def key(self) -> tuple[str, str, int]:
-        """What deviates: the same in every chain that it is part of."""
-        return self.part, self.name, self.which
+    @classmethod
+    def about(
+        cls, part: str, name: str, within_mm: float, *, nominal_mm: float = 0.0, sign: float = -1.0, which: int = 0
+    ) -> "Link":
+        """Return a length within ``within_mm`` to either side."""
+        limits = {"lower_mm": -within_mm, "upper_mm": within_mm}
+        return cls(part=part, name=name, sign=sign, nominal_mm=nominal_mm, which=which, **limits)
 
     @property
     def text(self) -> str:
@@ -84,26 +84,3 @@ def deviations(lower_mm: float, upper_mm: float) -> str:
     if np.isclose(lower_mm, -upper_mm):
         return f"±{upper_mm:g}"
     return " / ".join("0" if abs(limit) < 1e-12 else f"{limit:+g}" for limit in (upper_mm, lower_mm))
-
-
-def assembled_share(chains: Sequence[Chain], places: Floats) -> float:
-    """Return the share of products in which no chain jams.
-
-    Args:
-        chains: all chains of the product; links of one key share their deviation.
-        places: where each deviation lies between its limits, 0 to 1, shape (n, k) with one column per key in the order
-            of ``link_keys``.
-    """
-    keys = {key: column for column, key in enumerate(link_keys(chains))}
-    fits = np.ones(len(places), dtype=bool)
-    for chain in chains:
-        gap = np.full(len(places), chain.nominal_mm)
-        for one in chain.links:
-            gap += one.sign * (one.lower_mm + (one.upper_mm - one.lower_mm) * places[:, keys[one.key]])
-        fits &= gap >= chain.least_mm
-    return float(fits.mean())
-
-
-def link_keys(chains: Sequence[Chain]) -> list[tuple[str, str, int]]:
-    """Return everything that deviates in some chains, each once, sorted."""
-    return sorted({one.key for chain in chains for one in chain.links})

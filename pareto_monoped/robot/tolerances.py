@@ -12,6 +12,8 @@ from pareto_monoped.robot.build import Robot
 
 _PLATE_MM = 0.1
 """Within which plates of 2.5 to 8 mm are as thick as drawn (EN 485-4, cold-rolled, up to 1 m wide)."""
+_HOUSING_MM = 0.3
+"""Within which an actuator is as long as drawn, over casing, ring housing and backplate; our own choice."""
 _HOLES_MM = 0.05
 """Within which holes of a plate stand as far apart as drawn: half the zone of position on the drawings, twice."""
 _CUT_MM = 0.1
@@ -44,19 +46,9 @@ def _lateral(robot: Robot, parts: Mapping[str, Part]) -> tuple[Chain, ...]:
     leg, core = robot.leg, length_link(parts["thigh_core"], "thickness")
     width = length_link(parts["knee_bearing"], "width", -1.0)
 
-    def off(part: str, nominal_mm: float, within_mm: float, sign: float) -> Link:
-        return Link(
-            part=part, name="thickness", sign=sign, nominal_mm=nominal_mm, lower_mm=-within_mm, upper_mm=within_mm
-        )
+    def plate(part: str, nominal_mm: float, sign: float = -1.0) -> Link:
+        return Link.about(part, "thickness", _PLATE_MM, nominal_mm=nominal_mm, sign=sign)
 
-    knee = Link(
-        part="knee_actuator",
-        name="length",
-        sign=-1.0,
-        nominal_mm=robot.knee.length_mm,
-        lower_mm=-_HOUSING_MM,
-        upper_mm=_HOUSING_MM,
-    )
     return (
         Chain(
             name="axial play of the knee",
@@ -66,13 +58,13 @@ def _lateral(robot: Robot, parts: Mapping[str, Part]) -> tuple[Chain, ...]:
         Chain(
             name="journal's shoulder to the far bearing",
             links=(
-                off("base_near_cheek", leg.cheek_mm, _PLATE_MM, 1.0),
+                plate("base_near_cheek", leg.cheek_mm, 1.0),
                 length_link(parts["base_rod"], "length"),
                 length_link(parts["hip_coupling"], "thickness", -1.0),
-                off("thigh_inner_plate", leg.plate_mm, _PLATE_MM, -1.0),
+                plate("thigh_inner_plate", leg.plate_mm),
                 replace(core, sign=-1.0),
-                off("thigh_outer_plate", leg.plate_mm, _PLATE_MM, -1.0),
-                knee,
+                plate("thigh_outer_plate", leg.plate_mm),
+                Link.about("knee_actuator", "length", _HOUSING_MM, nominal_mm=robot.knee.length_mm),
                 length_link(parts["journal"], "reach", -1.0),
             ),
             cure="raise the float of the far bearing",
@@ -80,29 +72,22 @@ def _lateral(robot: Robot, parts: Mapping[str, Part]) -> tuple[Chain, ...]:
     )
 
 
-_HOUSING_MM = 0.3
-"""Within which an actuator is as long as drawn, over casing, ring housing and backplate; our own choice."""
-
-
 def _strand(robot: Robot) -> tuple[Chain, ...]:
     """Return what the turnbuckles' travel leaves when every length is at its worst; both ends move."""
     leg = robot.leg
     longer_mm = _CHAIN_SHARE * links_of(leg) * leg.chain.pitch_mm
 
-    def off(part: str, lower_mm: float, upper_mm: float, which: int = 0) -> Link:
-        return Link(
-            part=part, name="length", sign=-1.0, nominal_mm=0.0, lower_mm=lower_mm, upper_mm=upper_mm, which=which
-        )
-
-    travel = Link(
-        part="turnbuckle_bar", name="travel", sign=1.0, nominal_mm=2.0 * TRAVEL, lower_mm=-_BAR_MM, upper_mm=_BAR_MM
+    pieces = (
+        Link(part=f"chain_{end}", name="length", sign=-1.0, nominal_mm=0.0, lower_mm=0.0, upper_mm=longer_mm)
+        for end in ("hip", "knee")
     )
-    pieces = (off(f"chain_{end}", 0.0, longer_mm) for end in ("hip", "knee"))
-    forks = (off("turnbuckle_end", -_BAR_MM, _BAR_MM, which) for which in (0, 1))
+    forks = (Link.about("turnbuckle_end", "length", _BAR_MM, which=which) for which in (0, 1))
+    travel = Link.about("turnbuckle_bar", "travel", _BAR_MM, nominal_mm=2.0 * TRAVEL, sign=1.0)
+    plate = Link.about("thigh_inner_plate", "length", _HOLES_MM)
     return (
         Chain(
             name="travel of the turnbuckles",
-            links=(travel, off("thigh_inner_plate", -_HOLES_MM, _HOLES_MM), *pieces, *forks),
+            links=(travel, plate, *pieces, *forks),
             least_mm=2.0 * _WEAR_MM,
             cure="raise the travel of the turnbuckles",
         ),
@@ -113,24 +98,14 @@ def _stops(robot: Robot) -> tuple[Chain, ...]:
     """Return by how much the end stops of either joint may still be off where they meet, on their levers."""
     stops = {"hip": hip_stop(robot.leg), "knee": knee_stop(robot.leg)}
 
-    def off(part: str, within_mm: float) -> Link:
-        return Link(part=part, name="face", sign=-1.0, nominal_mm=0.0, lower_mm=-within_mm, upper_mm=within_mm)
-
     return tuple(
         Chain(
             name=f"angle of the {joint}'s end stops, on their lever",
             links=(
-                Link(
-                    part=f"{joint}_stop",
-                    name="allowed",
-                    sign=1.0,
-                    nominal_mm=_STOP_RAD * stop.lever_mm,
-                    lower_mm=0.0,
-                    upper_mm=0.0,
-                ),
-                off(f"{joint}_seat", _CUT_MM),
-                off(f"{joint}_bumper", _BUMPER_MM),
-                off(f"{joint}_striker", _CUT_MM),
+                Link.about(f"{joint}_stop", "allowed", 0.0, nominal_mm=_STOP_RAD * stop.lever_mm, sign=1.0),
+                Link.about(f"{joint}_seat", "face", _CUT_MM),
+                Link.about(f"{joint}_bumper", "face", _BUMPER_MM),
+                Link.about(f"{joint}_striker", "face", _CUT_MM),
             ),
             cure="grind the bumpers to their diameter",
         )

@@ -18,7 +18,7 @@ from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.variations import Variations
 from pareto_monoped.measures import is_robust
 from pareto_monoped.robot.units import BODIES, JOINTS
-from pareto_monoped.uncertainty.settings import DEFAULT_SEED, Sampling, Uncertainty
+from pareto_monoped.uncertainty.settings import DEFAULT_SEED, STAND_RANGES, Sampling, Uncertainty
 from pareto_monoped.uncertainty.statistics import overloads, spread
 
 Floats = NDArray[np.float64]
@@ -50,7 +50,7 @@ DIMENSIONS: tuple[tuple[Name, int], ...] = (
     ("battery_voltage", 1),
 )
 """Ranges and how many independent numbers each has, in the order of the points' coordinates."""
-STAND_DIMENSIONS: tuple[tuple[Name, int], ...] = (("stand_mass", 1), ("rail_friction", 1))
+STAND_DIMENSIONS: tuple[tuple[Name, int], ...] = tuple((name, 1) for name in STAND_RANGES)
 """Those that follow where there is a stand."""
 DEFAULT_SAMPLES = 256
 """Samples per design. 256 points estimate a 5th percentile to within 1.4 percent of

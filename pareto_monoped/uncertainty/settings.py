@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -12,7 +12,8 @@ from pareto_monoped.errors import InputError, StudyError, complaint
 
 SHIPPED, WHAT = "uncertainty.toml", "uncertainty file"
 """The shipped file, and what such a file is called in messages."""
-_STAND_RANGES = ("stand_mass", "rail_friction")  # which only a calibration with a stand has
+STAND_RANGES: tuple[Literal["stand_mass", "rail_friction"], ...] = ("stand_mass", "rail_friction")
+"""Which only a calibration with a stand has."""
 _LEAST_SHARE, _MOST_LENGTH_M = -0.9, 0.01
 """Beyond these nothing is left of a part, or its mass no longer fits its length. Our own choice."""
 
@@ -89,7 +90,7 @@ def uncertainty_of(values: Mapping[str, Any], *, source: str, error: type[InputE
 
 def _shipped(*, stand: bool) -> dict[str, Any]:
     values = read_shipped(SHIPPED, what=WHAT)
-    return {name: value for name, value in values.items() if stand or name not in _STAND_RANGES}
+    return {name: value for name, value in values.items() if stand or name not in STAND_RANGES}
 
 
 def load_uncertainty(path: Path | None = None) -> Uncertainty:

@@ -12,7 +12,6 @@ from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.search import map_of
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.tolerances import gearbox_chains
-from pareto_monoped.geometry.chains import assembled_share, link_keys
 from tests.actuator import assembling
 
 SAMPLES = 3000
@@ -30,6 +29,16 @@ def winners(name, rules="iso6336"):
         for family, found in entry.families.items()
         if found.best is not None
     ]
+
+
+def key(link):
+    """What deviates: the same in every chain that it is part of."""
+    return link.part, link.name, link.which
+
+
+def assembled_share(chains, off):
+    """The share of n gearboxes in which no chain is below its least gap; ``off`` has all deviations by key, (n,)."""
+    return float(np.all([gap_mm(chain, off) >= chain.least_mm for chain in chains], axis=0).mean())
 
 
 def widened(chains, factor):
@@ -54,15 +63,15 @@ def fit(actuator, off):
 
 def shares(actuator, chains, seed):
     """The share that assembles, by the chains and by putting the same gearboxes together."""
-    keys = link_keys(chains)
-    limits = {one.key: (one.lower_mm, one.upper_mm) for chain in chains for one in chain.links}
+    limits = {key(one): (one.lower_mm, one.upper_mm) for chain in chains for one in chain.links}
+    keys = sorted(limits)
     places = np.random.default_rng(seed).random((SAMPLES, len(keys)))
     off = {key: limits[key][0] + (limits[key][1] - limits[key][0]) * places[:, k] for k, key in enumerate(keys)}
-    return assembled_share(chains, places), float(fit(actuator, off).mean())
+    return assembled_share(chains, off), float(fit(actuator, off).mean())
 
 
 def gap_mm(chain, off):
-    return sum(one.sign * (one.nominal_mm + off[one.key]) for one in chain.links)
+    return sum(one.sign * (one.nominal_mm + off[key(one)]) for one in chain.links)
 
 
 def at_the_limit(chains, chain, over_mm):
@@ -71,9 +80,9 @@ def at_the_limit(chains, chain, over_mm):
     Each length goes the same share of its way from the middle to its worse end, past it if need be. None where that
     takes lengths far off, or leaves another chain below its own least gap.
     """
-    middle = {one.key: 0.5 * (one.lower_mm + one.upper_mm) for each in chains for one in each.links}
-    half = {one.key: 0.5 * (one.upper_mm - one.lower_mm) for one in chain.links if one.name not in NO_TOLERANCE}
-    worse = {one.key: -np.sign(one.sign) * half[one.key] for one in chain.links if one.key in half}
+    middle = {key(one): 0.5 * (one.lower_mm + one.upper_mm) for each in chains for one in each.links}
+    half = {key(one): 0.5 * (one.upper_mm - one.lower_mm) for one in chain.links if one.name not in NO_TOLERANCE}
+    worse = {key(one): -np.sign(one.sign) * half[key(one)] for one in chain.links if key(one) in half}
     lost = gap_mm(chain, middle) - gap_mm(chain, {key: middle[key] + worse.get(key, 0.0) for key in middle})
     share = (gap_mm(chain, middle) - chain.least_mm - over_mm) / lost
     off = {key: middle[key] + share * worse.get(key, 0.0) for key in middle}

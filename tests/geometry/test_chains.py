@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.geometry.chains import Chain, Link, assembled_share, deviations, link_keys
+from pareto_monoped.geometry.chains import Chain, Link, deviations
 
 
 def link(name, sign, nominal, lower, upper, which=0):
@@ -53,21 +53,13 @@ def test_what_jams_is_told_with_its_lengths_and_its_cure():
     assert deviations(-0.1, 0.1) == "±0.1"
 
 
-def test_the_share_of_two_equal_limits_is_the_triangle_s():
-    """Hole and pin 0 to 0.1 wider: the pin is larger in half of all cases, and by 0.05 in an eighth."""
-    places = np.random.default_rng(0).random((200_000, 2))
-    links = (link("hole", 1.0, 10.0, 0.0, 0.1), link("pin", -1.0, 10.0, 0.0, 0.1))
-    chain = Chain(name="gap", links=links, cure="")
-    assert assembled_share((chain,), places) == pytest.approx(0.5, abs=0.005)
-    assert assembled_share((replace(chain, least_mm=-0.05),), places) == pytest.approx(7 / 8, abs=0.005)
-
-
-def test_a_length_deviates_once_in_all_chains_that_it_is_part_of():
-    """One chain fits where the length is long, the other where it is short: never both, or always one."""
-    long = Chain(name="long", links=(link("a", 1.0, 0.0, -1.0, 1.0),), cure="")
-    short = Chain(name="short", links=(link("a", -1.0, 0.0, -1.0, 1.0),), cure="")
-    other = Chain(name="other", links=(link("a", -1.0, 0.0, -1.0, 1.0, which=1),), cure="")
-    assert len(link_keys((long, short))) == 1
-    places = np.random.default_rng(1).random((20_000, 2))
-    assert assembled_share((long, short), places[:, :1]) == 0.0
-    assert assembled_share((long, other), places) == pytest.approx(0.25, abs=0.01)
+def test_three_standard_deviations_of_even_limits_are_those_of_samples():
+    """The spread is that of a million sums, or the worst case where that is narrower."""
+    links = [link(str(k), (-1.0) ** k, 2.0, -0.01 * k, 0.02) for k in range(1, 9)]
+    low, high = Chain(name="gap", links=tuple(links), cure="").spread_mm
+    places = np.random.default_rng(0).random((1_000_000, 8))
+    offs = [one.lower_mm + (one.upper_mm - one.lower_mm) * places[:, k] for k, one in enumerate(links)]
+    sums = sum(one.sign * (one.nominal_mm + off) for one, off in zip(links, offs, strict=True))
+    assert (low, high) == pytest.approx((sums.mean() - 3 * sums.std(), sums.mean() + 3 * sums.std()), abs=5e-4)
+    alone = Chain(name="gap", links=(links[0],), cure="")
+    assert alone.spread_mm == alone.worst_mm
