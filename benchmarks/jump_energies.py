@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import CONTROL, LOWER, NAMES, PAPER_CASES, UPPER, columns, complete
 from pareto_monoped.jump.audit import audit
-from pareto_monoped.jump.balance import balance_errors, energy_balance
+from pareto_monoped.jump.balance import balanced, energy_balance
 from pareto_monoped.jump.calibration import Calibration, load_calibration
 from pareto_monoped.jump.end_stops import end_stops, slow_torque_n_m
 from pareto_monoped.jump.evaluate import Evaluator
@@ -39,7 +39,7 @@ def main(count: int, db: Path | None) -> None:
     _print_balances(reference)
     _print_stops(reference)
     robots = robot_arrays(designs, MAP, reference.mass)
-    errors = 100.0 * balance_errors(robots, columns(designs, CONTROL), reference)
+    errors = 100.0 * balanced(robots, columns(designs, CONTROL), reference).error
     print(f"\nbalance of {count} random designs as the audit counts: {_percentiles(errors)} %")
     _print_readings(reference, designs)
     if db is not None:

@@ -27,8 +27,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import CONTROL, LOWER, PAPER_CONTROL, UPPER, columns
 from pareto_monoped.jump.calibration import Calibration, FadeGate, load_calibration
+from pareto_monoped.jump.document import mjcf
 from pareto_monoped.jump.evaluate import Evaluator, evaluate_robots
-from pareto_monoped.jump.model import mjcf
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
 from tests.jump.oracle import Jump, jump, motors_of
 

@@ -17,8 +17,8 @@ import numpy as np
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import LOWER, UPPER, Floats
 from pareto_monoped.jump.calibration import Calibration, load_calibration
+from pareto_monoped.jump.document import mjcf
 from pareto_monoped.jump.gravity import least_energy_j
-from pareto_monoped.jump.model import mjcf
 from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
 

@@ -33,7 +33,7 @@ from pareto_monoped.definition.study import Study
 from pareto_monoped.definition.variables import Bounds
 from pareto_monoped.design import NAMES, PAPER_NAMES
 from pareto_monoped.jump.calibration import FadeGate
-from pareto_monoped.jump.model import mjcf
+from pareto_monoped.jump.document import mjcf
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.search.algorithm import Algorithm, Proposal, Scores
 from pareto_monoped.search.registry import make_algorithm

@@ -248,7 +248,7 @@ def _write_model(
     path: Path, design: Design, motors: dict[str, str], maps: "JointMaps", calibration: "Calibration", *, force: bool
 ) -> None:
     from pareto_monoped.files import write_text
-    from pareto_monoped.jump.model import mjcf
+    from pareto_monoped.jump.document import mjcf
     from pareto_monoped.robot.population import robot_arrays
 
     robots = robot_arrays(design.as_array()[None, :], maps, calibration.mass)

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 Trace = Mapping[str, NDArray[np.float64]]
 
 _QPOS = {"slide_x": "base_x_m", "slide_z": "base_z_m", "hip": "hip_rad", "knee": "knee_rad"}
+_QPOS |= {f"{joint}_motor": _QPOS[joint] for joint in ("hip", "knee")}
 """Joint of the model -> column of the trace."""
 _REST_S = 1.0  # at the apex, before the viewer begins again
 

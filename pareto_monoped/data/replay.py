@@ -45,28 +45,41 @@ def delivered(jump: dict, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
     return np.where((loss == 0.0) | (torque == 0.0), torque, np.clip(after, -limit, limit))
 
 
+def bumpers(jump: dict, angle: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    """Torques of the end stops after Hunt and Crossley: the bumper's slow torque times 1 + chi speed, never a pull."""
+    lower, upper = np.array(jump["lower_stop_rad"]), np.array(jump["upper_stop_rad"])
+    side = np.where(angle < lower, 1.0, -1.0)
+    share = np.maximum(np.maximum(lower - angle, angle - upper), 0.0) * jump["bumper_per_rad"]
+    slow = np.array(jump["bumper_n_m"]) * (1.25 * share * np.sqrt(share) + 50.0 * share**6)
+    return side * slow * np.maximum(0.0, 1.0 - side * jump["bumper_s_per_rad"] * speed)
+
+
 def replay(folder: Path, place: str = "") -> tuple[float, float, float]:
     """Height in m, mechanical energy and energy from the battery in J of the jump in ``folder``; place: "_stand"."""
     jump = json.loads((folder / f"jump{place}.json").read_text())
     model = mujoco.MjModel.from_xml_path(str(folder / f"monoped{place}.xml"))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.keyframe("start").id)
-    z, hip, knee = (int(model.joint(name).qposadr[0]) for name in ("slide_z", "hip", "knee"))
+    at = {model.joint(k).name: int(model.joint(k).qposadr[0]) for k in range(model.njnt)}
+    z, hip, knee = (at[name] for name in ("slide_z", "hip", "knee"))
+    # Elastic drives turn against their joints.
+    motors = [at.get("hip_motor", hip), at.get("knee_motor", knee)]
     heat_per_torque2 = np.array(jump["heat_w_per_n2_m2"])
     height, work, electrical = data.qpos[z], np.zeros(2), 0.0
     stood = touched = latched = off = False
     commands: list[tuple[np.ndarray, np.ndarray]] = []
     motor, quiet, step, before = np.zeros(2), 0, 0, np.zeros(model.nv)
     while step <= jump["step_limit"]:
-        speed = data.qvel[[hip, knee]].copy()
+        speed = data.qvel[motors].copy()
         below = virtual_leg(jump, data.qpos[hip], data.qpos[knee], speed)[1]
         height = max(height, data.qpos[z])
         touching = data.qpos[z] + below - jump["foot_radius_m"] <= jump["touch_m"]
         stood = stood or touching
         # What the controller reads: positions at the time of the speeds, half a step back.
         q = data.qpos - jump["read_back_s"] * (1.25 * data.qvel - 0.25 * before)
+        ahead = data.qvel + jump["read_back_s"] * (data.qvel - before) / jump["timestep_s"]
         before = data.qvel.copy()
-        wanted, below = virtual_leg(jump, q[hip], q[knee], speed)
+        wanted, below = virtual_leg(jump, q[motors[0]], q[motors[1]], speed)
         clearance = q[z] + below - jump["foot_radius_m"]
         tick = step % jump["period_steps"] == 0 and not latched
         if tick:
@@ -88,24 +101,27 @@ def replay(folder: Path, place: str = "") -> tuple[float, float, float]:
         elif tick:
             shares = np.full(2, gate)
             if jump["knee_release_rad"]:
-                shares[1] *= np.clip((q[knee] - jump["lower_stop_rad"][1]) / jump["knee_release_rad"], 0.0, 1.0)
+                shares[1] *= np.clip((q[motors[1]] - jump["lower_stop_rad"][1]) / jump["knee_release_rad"], 0.0, 1.0)
             stiffness, damping = jump["flight_stiffness_n_m_per_rad"], jump["flight_damping_n_m_s_per_rad"]
             if not gate and stiffness:  # pull the leg back to its start pose
-                shares, wanted = np.ones(2), stiffness * (jump["start_rad"] - q[[hip, knee]]) - damping * speed
+                shares, wanted = np.ones(2), stiffness * (jump["start_rad"] - q[motors]) - damping * speed
             commands.append((shares, wanted))
             motor = np.zeros(2)
             if len(commands) > jump["delay_periods"]:
                 shares, torque = commands[-1 - int(jump["delay_periods"])]
                 motor = shares * limited(jump, torque, speed)
-        data.ctrl[:] = delivered(jump, motor, speed)
+        data.ctrl[:2] = delivered(jump, motor, speed)
+        if model.nu > 2:
+            data.ctrl[2:] = bumpers(jump, data.qpos[[hip, knee]], ahead[[hip, knee]])
         mujoco.mj_step(model, data)
         step += 1
-        during = 0.5 * (speed + data.qvel[[hip, knee]]) if jump["mean_speed"] else speed
+        during = 0.5 * (speed + data.qvel[motors]) if jump["mean_speed"] else speed
         power = motor * during
         work += np.maximum(power, 0.0) * jump["timestep_s"]
         at_battery = power + heat_per_torque2 * motor**2
+        at_battery = at_battery.sum(keepdims=True) if jump["bus"] else at_battery
         share_back = np.where(at_battery > 0.0, 1.0, jump["regeneration_share"])
-        electrical += float(share_back @ at_battery) * jump["timestep_s"]
+        electrical += float(np.sum(share_back * at_battery)) * jump["timestep_s"]
     return float(height), float(work.sum()), electrical + jump["standby_power_w"] * step * jump["timestep_s"]
 
 

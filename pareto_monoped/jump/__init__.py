@@ -1,8 +1,8 @@
 """Stage 2: a robot becomes a MuJoCo model, jumps under the paper's controller, and its jump is measured.
 
-Order of imports, lowest first: calibration_defaults, controller_record, quiet, rebound; calibration, controller;
-callback, end_stops, variations; model; gravity; population; evaluate, frames; peers, shared, single; balance; audit;
-screen, table1.
+Order of imports, lowest first: calibration_defaults, controller_record, quiet, rebound; calibration, virtual_leg;
+controller, end_stops; callback, model; document, planar, variations; gravity, population; engines, frames; evaluate;
+peers, shared, single; balance; audit; screen, table1.
 """
 
 __all__ = [
@@ -11,6 +11,7 @@ __all__ = [
     "calibration",
     "calibration_defaults",
     "controller_record",
+    "document",
     "end_stops",
     "evaluate",
     "frames",

@@ -12,14 +12,15 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pareto_monoped.actuator.ratiomap import Maps
+from pareto_monoped.actuator.ratiomap import Maps, joint_maps
 from pareto_monoped.compute.chunks import pace_of, spread, task_threads
 from pareto_monoped.design import CONTROL, DEFAULTS, NAMES, PAPER_NAMES, RATIOS, Floats, columns, complete
-from pareto_monoped.jump.balance import balance_errors
+from pareto_monoped.jump.balance import Balanced, balanced
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.controller_record import MOST_DELAY
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.shared import Setup, built, evaluator_of, setup_text
+from pareto_monoped.jump.variations import joined
 from pareto_monoped.measures import AuditMeasures, measure
 from pareto_monoped.robot.population import robot_arrays
 
@@ -55,6 +56,13 @@ LIMITS: tuple[Limit, ...] = (
     # Energy that is unaccounted for is no better than energy that changes with the step.
     Limit(name="energy_balance_error", most=0.01, text="energy balance"),
 )  #: All conditions on a well-conditioned jump, besides that there is a jump.
+
+
+SAME = 1e-6
+"""Most by which MuJoCo's height, in metres, and energy, as a share, may differ from those of another engine.
+
+They differ by rounding, which reaches 1e-9 where a drive has play; a micrometre is still no difference to anybody.
+"""
 
 
 def exceeded(values: Mapping[str, float]) -> tuple[str, ...]:
@@ -136,9 +144,10 @@ def audit(
     perturbations: int = 10,
     seed: int = 0,
     known: Jumps | None = None,
+    judged: "Judged | None" = None,
     brief: bool = False,
 ) -> Audits:
-    """Audit the jumps of designs, which may be ``known`` already; ``executor`` makes the others in place of threads.
+    """Audit the jumps of designs, which may be ``known`` and ``judged``; ``executor`` makes others in place of threads.
 
     Each design has ``perturbations`` copies; the same ``seed`` gives the same audit. A brief audit measures only what
     has a limit, and perturbs less often where the result is clear.
@@ -158,18 +167,82 @@ def audit(
         quarter = evaluator_of(actuator_map, finer(calibration, 4), workers, executor=executor)(values)
         held, prompt = _with_two_periods(values, jumps, quarter)
         rest = {**_changes("quarter_step", base, quarter), **_changes("control_period", held, prompt)}
-    balance = np.full(len(values), np.nan)
-    ok = np.flatnonzero(base.ok)
-    if len(ok):
-        balance[ok] = _open_balances(values[ok], jumps)
-    measured = {"energy_balance_error": balance, **halved, **spread, **rest}
+    if judged is None:
+        judged = judge(values, actuator_map, calibration, base, workers=workers, executor=executor)
+    measured = {**judged.as_columns(), **halved, **spread, **rest}
+    apart = judged.apart(base)
     reasons = tuple(
-        "; ".join(exceeded({name: float(column[i]) for name, column in measured.items()}))
+        "; ".join((*exceeded({name: float(column[i]) for name, column in measured.items()}), *filter(None, [apart[i]])))
         if base.ok[i]
         else f"no jump: {base.status[i]}"
         for i in range(len(values))
     )
     return Audits(status=base.status, height_m=base.height_m, energy_j=base.energy_j, **measured, reason=reasons)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Judged:
+    """What MuJoCo says of n jumps, whatever engine made them; NaN where there was none."""
+
+    #: energy_balance_error, mujoco_height_m, mujoco_energy_j: as in ``AuditMeasures``, shape (n,)
+    energy_balance_error: Floats
+    mujoco_height_m: Floats
+    mujoco_energy_j: Floats
+
+    def as_columns(self) -> dict[str, Floats]:
+        """Return column name to values of shape (n,)."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    def clear(self, jumps: Jumps | Evaluations) -> NDArray[np.bool_]:
+        """Return where MuJoCo makes the same jump and its energy balance closes, shape (n,)."""
+        (most,) = (limit.most for limit in LIMITS if limit.name == "energy_balance_error")
+        return np.array([not apart for apart in self.apart(jumps)]) & (self.energy_balance_error <= most)
+
+    def apart(self, jumps: Jumps | Evaluations) -> tuple[str, ...]:
+        """Return for each jump how far MuJoCo's is from it, if by more than ``SAME``; empty where it is the same."""
+        height = np.abs(self.mujoco_height_m - jumps.height_m)
+        energy = np.abs(self.mujoco_energy_j / jumps.energy_j - 1.0)
+        same = (height <= SAME) & (energy <= SAME)
+        return tuple(
+            "" if fine or not ok else f"by MuJoCo {h:.7g} m on {e:.7g} J, not the same jump"
+            for fine, ok, h, e in zip(same, jumps.ok, self.mujoco_height_m, self.mujoco_energy_j, strict=True)
+        )
+
+
+def judge(
+    designs: Floats,
+    actuator_map: Maps,
+    calibration: Calibration,
+    jumps: Jumps | Evaluations,
+    *,
+    workers: int = 1,
+    executor: Executor | None = None,
+) -> Judged:
+    """Jump with each design again by MuJoCo, shape (n, number of variables), and close its energy balance."""
+    columns_of = {name: np.full(len(designs), np.nan) for name in (field.name for field in fields(Judged))}
+    ok = np.flatnonzero(jumps.ok)
+    if len(ok):
+        setup = ((joint_maps(actuator_map),), calibration.by("mujoco"))
+        if executor is None:
+            found = _balanced(setup, designs[ok], workers)
+        else:
+            text = setup_text(*setup)
+            pace = pace_of(executor, _balanced_of, text)
+            found = joined(spread(executor, pace, len(ok), _balanced_of, lambda rows: (text, designs[ok][rows])))
+        columns_of["energy_balance_error"][ok] = found.error
+        columns_of["mujoco_height_m"][ok] = np.where(found.ok, found.height_m, np.nan)
+        columns_of["mujoco_energy_j"][ok] = np.where(found.ok, found.energy_j, np.nan)
+    return Judged(**columns_of)
+
+
+def _balanced_of(text: str, values: Floats) -> Balanced:
+    return _balanced(built(text), values, task_threads())
+
+
+def _balanced(setup: Setup, values: Floats, workers: int) -> Balanced:
+    (maps,), calibration = setup
+    robots = robot_arrays(values, maps, calibration.mass)
+    return balanced(robots, columns(values, CONTROL), calibration, workers)
 
 
 ONLY_IN_FULL = ("quarter_step_height_m", "quarter_step_energy", "control_period_height_m", "control_period_energy")
@@ -208,25 +281,6 @@ def _within(share: float, changes: Mapping[str, Floats]) -> NDArray[np.bool_]:
     limited = [changes[limit.name] <= share * limit.most for limit in LIMITS if limit.name in changes]
     within: NDArray[np.bool_] = np.logical_and.reduce(limited)
     return within
-
-
-def _open_balances(values: Floats, jumps: Evaluator) -> Floats:
-    """Return what the energy balances of designs that jump leave open, shape (n,)."""
-    if jumps.executor is None:
-        return _balances((jumps.actuator_maps, jumps.calibration), values, jumps.workers)
-    text = setup_text(jumps.actuator_maps, jumps.calibration)
-    pace = pace_of(jumps.executor, _balances_of, text)
-    return np.concatenate(spread(jumps.executor, pace, len(values), _balances_of, lambda rows: (text, values[rows])))
-
-
-def _balances_of(text: str, values: Floats) -> Floats:
-    return _balances(built(text), values, task_threads())
-
-
-def _balances(setup: Setup, values: Floats, workers: int) -> Floats:
-    (maps,), calibration = setup
-    robots = robot_arrays(values, maps, calibration.mass)
-    return balance_errors(robots, columns(values, CONTROL), calibration, workers)
 
 
 def _with_two_periods(values: Floats, jumps: Evaluator, quarter: Evaluations) -> tuple[Evaluations, Evaluations]:

@@ -13,14 +13,12 @@ from numpy.typing import NDArray
 from pareto_monoped.design import Floats
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.end_stops import end_stops, slow_torque_n_m
-from pareto_monoped.jump.model import gear_efficiency, start_pose
+from pareto_monoped.jump.model import coordinates, gear_efficiency, joint_places, motor_places, start_pose
 from pareto_monoped.jump.population import Population, prepare
 from pareto_monoped.jump.quiet import quiet
 from pareto_monoped.jump.single import Moment, constraint_forces, moments
 from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import RobotArrays
-
-HIP, KNEE = -2, -1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,6 +32,9 @@ class EnergyBalance:
     bodies_kinetic_j: float  #: change of the kinetic energy of the bodies, each moving as one piece
     rotors_kinetic_j: float  #: change of what the turning parts have beyond that
     potential_j: float  #: change of the potential energy
+    #: drives_absorbed_j, drives_stored_j: lost in elastic drives, and what their springs hold at the end
+    drives_absorbed_j: float
+    drives_stored_j: float
     #: damping_j, friction_j: lost to viscous and Coulomb friction of the joints
     damping_j: float
     friction_j: float
@@ -54,7 +55,7 @@ class EnergyBalance:
     def residual_j(self) -> float:
         """The joints' work that the other terms do not explain."""
         moving = self.bodies_kinetic_j + self.rotors_kinetic_j + self.potential_j
-        stops = self.stops_absorbed_j + self.stops_stored_j
+        stops = self.stops_absorbed_j + self.stops_stored_j + self.drives_absorbed_j + self.drives_stored_j
         lost = self.damping_j + self.friction_j + self.rails_j + self.contact_j + self.integration_j
         return self.joint_work_j - moving - stops - lost
 
@@ -71,7 +72,10 @@ def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibratio
     inertia this is exactly the change of kinetic energy that the force causes in MuJoCo's semi-implicit step. In a
     Runge-Kutta step only the actuators' force is constant; the others count with the mean of their values at both ends.
     """
-    work = dict.fromkeys(("motor", "joint", "damping", "friction", "rails", "stops", "contact", "integration"), 0.0)
+    names = ("motor", "damping", "friction", "rails", "stops", "contact", "drives", "integration")
+    work = dict.fromkeys(names, 0.0)
+    motors, joints = motor_places(calibration), joint_places(calibration)
+    rails = coordinates(calibration).index("slide_z")
     mesh, chain = np.zeros(2), np.zeros(2)
     mesh_share = _mesh_share(robots, calibration)
     first: Moment | None = None
@@ -81,22 +85,27 @@ def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibratio
         if moment.last:
             break
         before, moved = moved, _moved(moment, calibration)
-        motor = np.array(moment.record["motor_torque_n_m"]) * moved[HIP:]
-        lost = motor - moment.data.qfrc_actuator[HIP:] * moved[HIP:]
+        motor = np.array(moment.record["motor_torque_n_m"]) * moved[motors]
+        lost = motor - moment.data.ctrl[:2] * moved[motors]
         work["motor"] += float(motor.sum())
         mesh += mesh_share * lost
         chain += (1.0 - mesh_share) * lost
         mean = 0.5 * (before + moved) if calibration.simulation.integrator == "RK4" else moved
         friction, stops, contact = constraint_forces(moment.data)
         work["damping"] += float((moment.model.dof_damping * _damped(moment, calibration)) @ mean)
-        work["friction"] -= float(friction[HIP:] @ mean[HIP:])
-        work["rails"] -= float(friction[:HIP] @ mean[:HIP])
+        work["friction"] -= float(friction[motors] @ mean[motors])
+        work["rails"] -= float(friction[rails] * mean[rails])
         work["stops"] -= float(stops @ mean)
+        if len(moment.data.ctrl) > 2:
+            work["stops"] -= float(moment.data.ctrl[2:] @ mean[joints])
+        if calibration.drive.elastic:
+            rate = moment.qvel[motors] - moment.qvel[joints]
+            work["drives"] += float((moment.model.tendon_damping[:2] * rate) @ (mean[motors] - mean[joints]))
         work["contact"] -= float(contact @ mean)
         work["integration"] += _integration_loss_j(moment, calibration, moved)
     assert first is not None
     start, end = (_energies(robots, calibration, each) for each in (first, moment))
-    bodies, rotors, potential, stored = end - start
+    bodies, rotors, potential, stored, wound = end - start
     return EnergyBalance(
         motor_work_j=work["motor"],
         mesh_loss_j=float(mesh.sum()),
@@ -104,6 +113,8 @@ def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibratio
         bodies_kinetic_j=float(bodies),
         rotors_kinetic_j=float(rotors),
         potential_j=float(potential),
+        drives_absorbed_j=work["drives"],
+        drives_stored_j=float(wound),
         damping_j=work["damping"],
         friction_j=work["friction"],
         rails_j=work["rails"],
@@ -162,7 +173,7 @@ def back_s(calibration: Calibration) -> float:
 
 
 def _energies(robots: RobotArrays, calibration: Calibration, moment: Moment) -> Floats:
-    """Return kinetic energy of bodies and of rotors, potential energy, and what the end stops store, at a state."""
+    """Return kinetic energy of bodies and rotors, potential energy, what end stops and drives store, at a state."""
     import mujoco
 
     model, data = moment.model, moment.scratch
@@ -171,28 +182,40 @@ def _energies(robots: RobotArrays, calibration: Calibration, moment: Moment) -> 
     mujoco.mj_energyPos(model, data)
     mujoco.mj_energyVel(model, data)
     potential, kinetic = data.energy
-    rotors = _rotors_kinetic_j(robots, calibration, moment.qvel[HIP:])
-    return np.array([kinetic - rotors, rotors, potential, _stored_j(robots, calibration, data)])
+    hip, knee = joint_places(calibration)
+    rotors = _rotors_kinetic_j(robots, calibration, moment.qvel[hip], moment.qvel[motor_places(calibration)])
+    stored, wound = _stored_j(robots, calibration, data.qpos[[hip, knee]]), 0.0
+    if calibration.drive.elastic:
+        play = 0.5 * calibration.drive.backlash_rad
+        turned = np.maximum(np.abs(data.ten_length[:2]) - play, 0.0)
+        wound = float(0.5 * model.tendon_stiffness[:2] @ np.square(turned))
+    return np.array([kinetic - rotors, rotors, potential - wound, stored, wound])
 
 
-def _rotors_kinetic_j(robots: RobotArrays, calibration: Calibration, speed: Floats) -> float:
-    """Return what the turning parts have beyond the motion of the bodies that carry them, see ``robot.rotation``."""
+def _rotors_kinetic_j(robots: RobotArrays, calibration: Calibration, thigh: float, speed: Floats) -> float:
+    """Return what the turning parts have beyond the motion of the bodies that carry them, see ``robot.tables``.
+
+    The thigh turns with the speed ``thigh``, and the motors with ``speed``, shape (2,), as speeds of their joints.
+    """
     hip, knee = speed
     armature = robots.armature_kg_m2[0]
     if calibration.joints.rotors == "armature":
         return float(0.5 * armature @ np.square(speed))
     reflected, coupling = robots.knee_reflected_kg_m2[0], robots.knee_coupling_kg_m2[0]
-    riding = 0.5 * (armature[0] + robots.rotor_excess_kg_m2[0]) * hip**2
-    return float(riding + coupling * hip * knee + 0.5 * reflected * knee**2)
+    riding = 0.5 * (armature[0] * hip**2 + robots.rotor_excess_kg_m2[0] * thigh**2)
+    return float(riding + coupling * thigh * knee + 0.5 * reflected * knee**2)
 
 
-def _stored_j(robots: RobotArrays, calibration: Calibration, data: Any) -> float:
+def _stored_j(robots: RobotArrays, calibration: Calibration, angles: Floats) -> float:
     """Work of a slow relief of both end stops, by the trapezoidal rule."""
     stored = 0.0
-    for stop, angle in zip(end_stops(robots, calibration.joints), data.qpos[HIP:], strict=True):
+    parts = (robots.stops.hip, robots.stops.knee)
+    for part, stop, angle in zip(parts, end_stops(robots, calibration.joints), angles, strict=True):
         if stop is not None:
             beyond = np.linspace(0.0, max(0.0, stop.lower_rad - angle, angle - stop.upper_rad), 1001)
-            stored += float(np.trapezoid(slow_torque_n_m(stop, beyond), beyond))
+            own = calibration.joints.stop_law == "hunt_crossley"
+            torque = part.torque_n_m(beyond) if own else slow_torque_n_m(stop, beyond)
+            stored += float(np.trapezoid(torque, beyond))
     return stored
 
 
@@ -207,20 +230,16 @@ class Balanced:
     error: Floats  #: ``EnergyBalance.error``, shape (n,)
 
 
-def balance_errors(robots: RobotArrays, control: Floats, calibration: Calibration, workers: int = 1) -> Floats:
-    """Return ``EnergyBalance.error`` of the jumps of n robots that can stand, shape (n,)."""
-    if calibration.simulation.integrator == "RK4":
-        # Its steps leave the forces of their last stage, not those of the state.
-        single = (take(robots, np.array([i])) for i in range(len(robots)))
-        return np.array([energy_balance(one, control[i : i + 1], calibration).error for i, one in enumerate(single)])
-    return balanced(robots, control, calibration, workers).error
-
-
 @quiet()
 def balanced(robots: RobotArrays, control: Floats, calibration: Calibration, workers: int = 1) -> Balanced:
-    """Return the jumps of n robots that can stand, with their balances; not for the integrator RK4."""
-    from pareto_monoped.jump.controller import APEX
-
+    """Return the jumps of n robots that can stand, with their balances."""
+    if calibration.simulation.integrator == "RK4":
+        # Its steps leave the forces of their last stage, not those of the state.
+        population = prepare(robots, control, start_pose(robots, calibration), calibration, workers)
+        population.run()
+        alone = (take(robots, np.array([i])) for i in range(len(robots)))
+        errors = [energy_balance(one, control[i : i + 1], calibration).error for i, one in enumerate(alone)]
+        return _balanced_of(population, np.array(errors))
     pose = start_pose(robots, calibration)
     population = prepare(robots, control, pose, calibration, workers)
     damping = np.asarray(population.batch.expand("dof_damping"))
@@ -228,13 +247,19 @@ def balanced(robots: RobotArrays, control: Floats, calibration: Calibration, wor
     supplied, lost, qpos, qvel = _jumped(population, calibration, damping)
     weighed = prepare(robots, control, pose, calibration, workers).batch
     gained = _energies_j(weighed, qpos - back_s(calibration) * qvel, qvel) - _energies_j(weighed, start, 0.0)
+    return _balanced_of(population, np.abs(supplied - gained - lost) / np.maximum(np.abs(supplied), 1e-12))
+
+
+def _balanced_of(population: Population, error: Floats) -> Balanced:
+    from pareto_monoped.jump.controller import APEX
+
     records = population.records
     energy_j = records["energy_j"].sum(axis=1)
     return Balanced(
         ok=(records["status"] == APEX) & (energy_j > 0.0),
         height_m=np.array(records["height_m"]),
         energy_j=energy_j,
-        error=np.abs(supplied - gained - lost) / np.maximum(np.abs(supplied), 1e-12),
+        error=error,
     )
 
 
@@ -251,7 +276,9 @@ def _jumped(population: Population, calibration: Calibration, damping: Floats) -
 
     batch, status = population.batch, population.records["status"]
     qpos, qvel = batch.bind("qpos"), batch.bind("qvel")
-    torque, constraint = batch.bind("qfrc_actuator"), batch.bind("qfrc_constraint")
+    ctrl, constraint = batch.bind("ctrl"), batch.bind("qfrc_constraint")
+    motors, joints = motor_places(calibration), joint_places(calibration)
+    springs = np.asarray(batch.expand("tendon_damping"))[:, :2] if calibration.drive.elastic else None
     supplied, lost = np.zeros((2, len(status)))
     last_qpos, last_qvel = np.array(qpos), np.array(qvel)
     ids = np.arange(len(status))
@@ -271,8 +298,12 @@ def _jumped(population: Population, calibration: Calibration, damping: Floats) -
             mean = 0.5 * (before + qvel[ids])
             damped = qvel[ids] if calibration.simulation.integrator == "Euler" else mean
             moved = calibration.simulation.timestep_s * mean
-            supplied[ids] += np.sum(torque[ids][:, HIP:] * moved[:, HIP:], axis=1)
+            supplied[ids] += np.sum(ctrl[ids, :2] * moved[:, motors], axis=1)
             lost[ids] += np.sum((damping[ids] * damped - constraint[ids]) * moved, axis=1)
+            lost[ids] -= np.sum(ctrl[ids, 2:] * moved[:, joints[: ctrl.shape[1] - 2]], axis=1)
+            if springs is not None:
+                rate, wound = (each[:, motors] - each[:, joints] for each in (before, moved))
+                lost[ids] += np.sum(springs[ids] * rate * wound, axis=1)
     return supplied, lost, last_qpos, last_qvel
 
 

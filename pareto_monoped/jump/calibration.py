@@ -61,12 +61,19 @@ class Joints(Strict):
     friction_n_m: NotNegative
     #: Viscous friction at each motor's shaft; acts on the joint times the ratio squared
     motor_damping_n_m_s_per_rad: NotNegative = 0.0
+    #: friction_share, motor_damping_share_s_per_rad: Coulomb friction of each joint per peak torque there, and viscous
+    #: friction at each motor's shaft per peak torque there; both add to those above
+    friction_share: NotNegative = 0.0
+    motor_damping_share_s_per_rad: NotNegative = 0.0
     #: How the parts that turn with the knee actuator are booked: as ``armature`` of the joint alone, or with their
     #: ``absolute`` speeds, which the thigh's rotation is part of
     rotors: Literal["armature", "absolute"] = "armature"
     #: Where the end stops come from: ``given`` here as ``hip_stop`` and ``knee_stop``, or ``parts`` of the leg
     #: (``leg.stops``)
     stops: Literal["given", "parts"] = "given"
+    #: How bumpers of parts push back: by a ``constraint`` of MuJoCo that is fitted to the part, or with the part's slow
+    #: force times 1 + chi speed, where chi follows from the elastomer's rebound (``hunt_crossley``)
+    stop_law: Literal["constraint", "hunt_crossley"] = "constraint"
     #: hip_stop, knee_stop: end stops; None for a joint that turns freely
     hip_stop: EndStop | None = None
     knee_stop: EndStop | None = None
@@ -75,6 +82,8 @@ class Joints(Strict):
         """Refuse end stops beside those of the parts."""
         if self.stops == "parts" and (self.hip_stop or self.knee_stop):
             raise ValueError("stops = 'parts' goes without hip_stop and knee_stop; leave one of them out")
+        if self.stop_law == "hunt_crossley" and self.stops != "parts":
+            raise ValueError("stop_law = 'hunt_crossley' is that of bumpers; it needs stops = 'parts'; change one")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,6 +104,16 @@ class Drive(Strict):
     standby_power_w: NotNegative = 0.0  #: of the electronics, as long as the jump lasts
     #: Which losses: those of the ``mesh`` alone, or the ``total`` of meshes, planets' bushes and bearings
     efficiency: Literal["mesh", "total"] = "mesh"
+    #: What the battery feeds: ``each_motor`` by itself, so that what one motor gives back is lost (all but
+    #: ``regeneration_share``), or a ``bus`` on which the other motor takes it
+    battery: Literal["each_motor", "bus"] = "each_motor"
+    winding_rise_k: NotNegative = 0.0  #: of the windings' temperature above that of their data sheets, 20 degC
+    #: Whether motors turn against their joints, through gearbox, shaft and chain; otherwise all of these are rigid
+    elastic: bool = False
+    #: drive_damping_ratio, backlash_rad: of an elastic drive: damping, as a share of the critical one of the motor on
+    #: its spring with the joint held, and play at the joint between both directions
+    drive_damping_ratio: NotNegative = 0.0
+    backlash_rad: NotNegative = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -174,6 +193,9 @@ class Simulation(Strict):
 
     integrator: Literal["Euler", "RK4", "implicitfast", "implicit"]  #: MuJoCo's integrator
     timestep_s: Positive  #: step of the integrator
+    #: What makes the steps: ``mujoco``, or the planar leg written out, ``compiled``, which gives the same but for
+    #: rounding; films, exports and the jumps that judge a front are MuJoCo's in any case
+    engine: Literal["mujoco", "compiled"] = "mujoco"
     time_limit_s: Positive = 3.0  #: a jump that is not over by then has failed
     base_slides: bool = True  #: whether the base may move in x; otherwise a vertical guide holds it
     #: Period of the controller, a whole number of steps, in which the motors' torques are held; None: each step is a
@@ -258,8 +280,25 @@ class Calibration(Strict):
         """Refuse torques in flight with a gate that ends them, and a stand on which the base slides away."""
         if self.stand is not None and self.simulation.base_slides:
             raise ValueError("simulation.base_slides must be false with a table stand, whose rails hold it; correct it")
+        if self.simulation.engine == "compiled" and (lacks := self._lacks_for_compiled()):
+            raise ValueError(f"simulation.engine 'compiled' needs {lacks}; choose that, or the engine 'mujoco'")
         if self.controller.flight is not None and not isinstance(self.gate, ContactGate):
             raise ValueError(f"gate.rule {self.gate.rule!r} must be 'contact' if controller.flight is set; drop one")
+
+    def _lacks_for_compiled(self) -> str:
+        """Return what the engine ``compiled`` would need, empty if nothing."""
+        stops = self.joints.hip_stop or self.joints.knee_stop or self.joints.stops == "parts"
+        if self.simulation.integrator != "Euler":
+            return "simulation.integrator 'Euler'"
+        if not isinstance(self.contact, SpringContact):
+            return "contact.kind 'spring'"
+        return "joints.stop_law 'hunt_crossley'" if stops and self.joints.stop_law == "constraint" else ""
+
+    def by(self, engine: Literal["mujoco", "compiled"]) -> "Calibration":
+        """Return the same calibration with an engine."""
+        if self.simulation.engine == engine:
+            return self
+        return replace(self, simulation=replace(self.simulation, engine=engine))
 
     @property
     def label(self) -> str:
@@ -268,10 +307,13 @@ class Calibration(Strict):
 
 
 _LATER = {
-    "joints": ("rotors", "stops"),
-    "drive": ("knee_torque_scale", "regeneration_share", "standby_power_w", "efficiency"),
+    "joints": ("rotors", "stops", "friction_share", "motor_damping_share_s_per_rad", "stop_law"),
+    "drive": (
+        *("knee_torque_scale", "regeneration_share", "standby_power_w", "efficiency", "battery", "winding_rise_k"),
+        *("elastic", "drive_damping_ratio", "backlash_rad"),
+    ),
     "controller": ("weight", "flight"),
-    "simulation": ("control_period_s", "delay_s", "positions_read"),
+    "simulation": ("control_period_s", "delay_s", "positions_read", "engine"),
 }  #: Fields that calibrations did not always have, by table.
 
 

@@ -21,9 +21,8 @@ from numba import types
 
 from pareto_monoped.compute.compiled import c_function
 from pareto_monoped.errors import SimulationError
-from pareto_monoped.jump import controller
 from pareto_monoped.jump.controller import control
-from pareto_monoped.jump.controller_record import RECORD, RECORD_NUMBERS
+from pareto_monoped.jump.controller_record import RECORD, RECORD_NUMBERS, origin
 from pareto_monoped.jump.quiet import Setting, quiet
 
 
@@ -56,9 +55,9 @@ _state_size = types.ExternalFunction("mj_stateSize", types.int32(types.voidptr, 
 # MuJoCo lays a state out in the order of these bits.
 _USER = int(mujoco.mjtState.mjSTATE_USERDATA)
 _POSITIONS = int(mujoco.mjtState.mjSTATE_QPOS)
-_WRITTEN = int(mujoco.mjtState.mjSTATE_CTRL) | _USER
+_CTRL = int(mujoco.mjtState.mjSTATE_CTRL)
+_WRITTEN = _CTRL | _USER
 _READ = _POSITIONS | int(mujoco.mjtState.mjSTATE_QVEL) | _WRITTEN
-_JOINTS = 2
 
 
 @lru_cache(maxsize=1)
@@ -66,12 +65,9 @@ def _compiled() -> Any:
     library = ctypes.CDLL(str(_library()))
     for name in ("mj_getState", "mj_setState", "mj_stateSize"):
         llvmlite.binding.add_symbol(name, ctypes.cast(getattr(library, name), ctypes.c_void_p).value)
-    return c_function(types.void(types.voidptr, types.voidptr), _controller(_origin(Path(controller.__file__))))
-
-
-def _origin(source: Path) -> int:
-    """A number for what the callback depends on outside this file: controller's source, record, MuJoCo's version."""
-    return zlib.crc32(source.read_bytes() + f"{RECORD.descr}{mujoco.__version__}".encode())
+    return c_function(
+        types.void(types.voidptr, types.voidptr), _controller(zlib.crc32(f"{origin()}{mujoco.__version__}".encode()))
+    )
 
 
 def _library() -> Path:
@@ -82,22 +78,22 @@ def _library() -> Path:
     raise SimulationError(f"mujoco {mujoco.__version__}: has no libmujoco beside its package; install mujoco from PyPI")
 
 
-def _controller(origin: int) -> Callable[[Any, Any], None]:
+def _controller(sources: int) -> Callable[[Any, Any], None]:
     """Return ``mjcb_control``, not yet compiled, which MuJoCo calls in every step of every simulation of the process.
 
-    It closes over ``origin`` so that numba loads no callback from disk that was compiled with another controller.
+    It closes over ``sources`` so that numba loads no callback from disk that was compiled with another controller.
     """
 
     def act(model: Any, data: Any) -> None:
-        _ = origin
+        _ = sources
         if _state_size(model, _USER) != RECORD_NUMBERS:
             return
-        nv = _state_size(model, _POSITIONS)
-        state = np.empty(2 * nv + _JOINTS + RECORD_NUMBERS)
+        nv, nu = _state_size(model, _POSITIONS), _state_size(model, _CTRL)
+        state = np.empty(2 * nv + nu + RECORD_NUMBERS)
         _get_state(model, data, state.ctypes, _READ)
         written = state[2 * nv :]
-        jump = written[_JOINTS:].view(RECORD)[0]
-        control(state[:nv], state[nv : 2 * nv], written[:_JOINTS], jump)
+        jump = written[nu:].view(RECORD)[0]
+        control(state[:nv], state[nv : 2 * nv], written[:nu], jump)
         _set_state(model, data, written.ctypes, _WRITTEN)
 
     return act

@@ -1,8 +1,8 @@
 """The virtual controller and the bookkeeping of one jump, compiled by numba, which importing this module imports.
 
 ``control`` is called at the start of every step. Everything it knows about a jump besides positions and speeds is in
-one ``controller_record.RECORD``, which ``callback`` keeps in the user data of the simulation. All constants stay in
-this file because numba recompiles a function only if its own file or the type of an argument changes.
+one ``controller_record.RECORD``, which ``callback`` keeps in the user data of the simulation. Whatever calls it
+closes over ``controller_record.origin``, because numba recompiles a function only if its own file changes.
 """
 
 import math
@@ -10,9 +10,8 @@ from typing import Any
 
 from pareto_monoped.compute.compiled import compiled
 from pareto_monoped.design import GRAVITY_M_PER_S2, Floats
-from pareto_monoped.jump.controller_record import TOUCH_M
-
-HIP, KNEE = 0, 1
+from pareto_monoped.jump.controller_record import HIP, KNEE, TOUCH_M
+from pareto_monoped.jump.virtual_leg import held_pose, release, virtual_leg
 
 RUNNING, FLYING, APEX, NO_LIFT_OFF, SANK, DIVERGED, TIMEOUT = range(7)
 """``status``; a jump goes on through ``FLYING``."""
@@ -25,14 +24,15 @@ SPEED_LIMIT = 1e4  #: Speed of a joint or slide (rad/s, m/s) beyond which the si
 def control(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
     """Book the last step of a jump, end the jump if it is over, and set the torques of its next step.
 
-    ``q`` and ``v``, shape (nv,), are positions and speeds of slides (x if the base slides, z), hip and knee at the
-    start of the step. The torques ``ctrl`` of hip and knee and the ``RECORD`` are written.
+    ``q`` and ``v``, shape (nv,), are positions and speeds at the start of the step, in the order of ``places``.
+    Written are ``ctrl``, the torques of both motors and, under a law of our own, of both end stops, and the ``RECORD``.
     """
     if jump.stages > 1.0:
-        # A Runge-Kutta integrator calls once per stage; the torque of the first stage is held.
+        # A Runge-Kutta integrator calls once per stage; the motors' torque of the first stage is held.
         stage = jump.stage
         jump.stage = stage + 1.0 if stage + 1.0 < jump.stages else 0.0
         if stage > 0.0:
+            _stop(q, v, ctrl, jump)
             return
     if jump.status == RUNNING:
         _run(q, v, ctrl, jump)
@@ -40,6 +40,38 @@ def control(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
         _fly(q, v, jump)
     if jump.status != RUNNING:
         ctrl[HIP] = ctrl[KNEE] = 0.0
+    if jump.status <= FLYING:
+        _stop(q, v, ctrl, jump)
+
+
+@compiled
+def places(nv: int) -> tuple[int, int, int, int, int]:
+    """Return where z, hip, knee and the motors of hip and knee stand among ``nv`` coordinates.
+
+    First comes x, if the base slides, then z, hip, knee. With an elastic drive the motors of knee and hip follow, as
+    angles of their joints; without one they are hip and knee themselves.
+    """
+    z = 1 - nv % 2
+    return (z, z + 1, z + 2, nv - 1, nv - 2) if nv > 4 else (z, z + 1, z + 2, z + 1, z + 2)
+
+
+@compiled
+def _stop(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
+    """Set the torques of the bumpers: the part's slow torque times 1 + chi speed, as Hunt and Crossley have it."""
+    if ctrl.shape[0] == 2:
+        return
+    hip = places(v.shape[0])[1]
+    for joint in range(2):
+        below, above = jump.lower_stop_rad[joint] - q[hip + joint], q[hip + joint] - jump.upper_stop_rad[joint]
+        torque = 0.0
+        if below > 0.0 or above > 0.0:
+            side = 1.0 if below > 0.0 else -1.0
+            share = max(below, above) * jump.bumper_per_rad[joint]
+            slow = jump.bumper_n_m[joint] * (1.25 * share * math.sqrt(share) + 50.0 * share**6)
+            # The speed at the time of the positions: half a step on, with the acceleration of the last step.
+            speed = v[hip + joint] + jump.read_back_s * jump.spin_up_rad_per_s2[joint]
+            torque = side * slow * max(0.0, 1.0 - side * jump.bumper_s_per_rad[joint] * speed)
+        ctrl[2 + joint] = jump.stop_torque_n_m[joint] = torque
 
 
 @compiled
@@ -54,10 +86,10 @@ def _fine(q: Floats, v: Floats) -> bool:
 @compiled
 def _end(q: Floats, v: Floats, jump: Any) -> None:
     """End a jump at the apex (the foot is off the floor and the base no longer rises) or in failure."""
-    nv = v.shape[0]
-    if jump.off_floor > 0.0 and v[nv - 3] <= 0.0:
+    z = places(v.shape[0])[0]
+    if jump.off_floor > 0.0 and v[z] <= 0.0:
         jump.status = APEX
-    elif q[nv - 3] < SANK_M:
+    elif q[z] < SANK_M:
         jump.status = SANK
     elif jump.steps > jump.step_limit:
         jump.status = TIMEOUT if jump.off_floor > 0.0 else NO_LIFT_OFF
@@ -69,19 +101,18 @@ def _fly(q: Floats, v: Floats, jump: Any) -> None:
     if not _fine(q, v):
         jump.status = DIVERGED
         return
-    nv = v.shape[0]
+    z, hip, knee, hip_motor, knee_motor = places(v.shape[0])
     _loads(v, jump)
-    shank_angle = q[nv - 2] + q[nv - 1]
-    thigh_turned, shank_turned = _direction(q[nv - 2]), _direction(shank_angle)
+    thigh_turned, shank_turned = _direction(q[hip]), _direction(q[hip] + q[knee])
     _note_state(q, v, thigh_turned, shank_turned, jump)
     jump.steps += 1.0
-    jump.height_m = max(jump.height_m, q[nv - 3])
-    jump.peak_speed_rad_per_s[HIP] = max(jump.peak_speed_rad_per_s[HIP], abs(v[nv - 2]))
-    jump.peak_speed_rad_per_s[KNEE] = max(jump.peak_speed_rad_per_s[KNEE], abs(v[nv - 1]))
+    jump.height_m = max(jump.height_m, q[z])
+    jump.peak_speed_rad_per_s[HIP] = max(jump.peak_speed_rad_per_s[HIP], abs(v[hip_motor]))
+    jump.peak_speed_rad_per_s[KNEE] = max(jump.peak_speed_rad_per_s[KNEE], abs(v[knee_motor]))
     _end(q, v, jump)
     if jump.status != FLYING:
         rz = -jump.thigh_length_m * thigh_turned[1] - jump.shank_length_m * shank_turned[1]
-        jump.clearance_m = q[nv - 3] + rz - jump.foot_radius_m
+        jump.clearance_m = q[z] + rz - jump.foot_radius_m
 
 
 @compiled
@@ -90,17 +121,19 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
     if not _fine(q, v):
         jump.status = DIVERGED
         return
-    nv = v.shape[0]
-    z, hip, knee = q[nv - 3], q[nv - 2], q[nv - 1]
-    speed = (v[nv - 2], v[nv - 1])
-    thigh_turned, shank_turned = _direction(hip), _direction(hip + knee)
+    at_z, at_hip, at_knee, hip_motor, knee_motor = places(v.shape[0])
+    z, hip, knee = q[at_z], q[hip_motor], q[knee_motor]  # the encoders sit on the motors
+    speed = (v[hip_motor], v[knee_motor])
+    thigh_turned, shank_turned = _direction(q[at_hip]), _direction(q[at_hip] + q[at_knee])
     foot, shank = _foot(thigh_turned, shank_turned, jump)
     clearance = z + foot[1] - jump.foot_radius_m
 
     tick = jump.steps % jump.period_steps == 0.0
     read_clearance = clearance
-    if tick and jump.read_back_s > 0.0:
-        read_z, hip, knee = _read_back(q, v, jump)
+    if tick and (jump.read_back_s > 0.0 or hip_motor != at_hip):
+        read_z = z
+        if jump.read_back_s > 0.0:
+            read_z, hip, knee = _read_back(q, v, jump)
         foot, shank = _foot(_direction(hip), _direction(hip + knee), jump)
         read_clearance = read_z + foot[1] - jump.foot_radius_m
 
@@ -134,10 +167,10 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
             jump.quiet_periods += 1
         wanted, share = (0.0, 0.0), (gate, gate)
         if gate > 0.0:
-            wanted = _virtual_leg(foot, shank, speed, jump)
-            share = (gate, gate * _release(knee, jump))
+            wanted = virtual_leg(foot, shank, speed, jump)
+            share = (gate, gate * release(knee, jump))
         elif jump.flight_stiffness_n_m_per_rad > 0.0:
-            wanted, share = _held_pose((hip, knee), speed, jump), (1.0, 1.0)
+            wanted, share = held_pose((hip, knee), speed, jump), (1.0, 1.0)
         _command(wanted, share, speed, jump)
     for joint in range(2):
         jump.speed_rad_per_s[joint] = speed[joint]
@@ -153,11 +186,12 @@ def _direction(angle: float) -> tuple[float, float]:
 @compiled
 def _read_back(q: Floats, v: Floats, jump: Any) -> tuple[float, float, float]:
     """Positions z, hip, knee at the time of the speeds, half a step back, with the acceleration of the last step."""
-    nv, back = v.shape[0], jump.read_back_s
+    z, _, _, hip, knee = places(v.shape[0])
+    back = jump.read_back_s
     return (
-        q[nv - 3] - back * (1.25 * v[nv - 3] - 0.25 * jump.velocity[1]),
-        q[nv - 2] - back * (1.25 * v[nv - 2] - 0.25 * jump.velocity[2]),
-        q[nv - 1] - back * (1.25 * v[nv - 1] - 0.25 * jump.velocity[3]),
+        q[z] - back * (1.25 * v[z] - 0.25 * jump.velocity[1]),
+        q[hip] - back * (1.25 * v[hip] - 0.25 * jump.motor_rad_per_s[HIP]),
+        q[knee] - back * (1.25 * v[knee] - 0.25 * jump.motor_rad_per_s[KNEE]),
     )
 
 
@@ -173,12 +207,14 @@ def _foot(
 @compiled
 def _note_state(q: Floats, v: Floats, thigh: tuple[float, float], shank: tuple[float, float], jump: Any) -> None:
     """Keep the state at the start of a step, with sine and cosine of the links' angles."""
-    nv = v.shape[0]
-    jump.position[0] = q[0] if nv == 4 else 0.0
-    jump.velocity[0] = v[0] if nv == 4 else 0.0
+    z, _, _, hip, knee = places(v.shape[0])
+    jump.position[0] = q[0] if z == 1 else 0.0
+    jump.velocity[0] = v[0] if z == 1 else 0.0
     for k in range(3):
-        jump.position[1 + k] = q[nv - 3 + k]
-        jump.velocity[1 + k] = v[nv - 3 + k]
+        jump.position[1 + k] = q[z + k]
+        jump.velocity[1 + k] = v[z + k]
+    jump.motor_rad[HIP], jump.motor_rad[KNEE] = q[hip], q[knee]
+    jump.motor_rad_per_s[HIP], jump.motor_rad_per_s[KNEE] = v[hip], v[knee]
     jump.directions[0], jump.directions[1] = thigh
     jump.directions[2], jump.directions[3] = shank
     jump.drift_m = abs(jump.position[0])
@@ -205,15 +241,6 @@ def _gate(clearance: float, touching: bool, jump: Any) -> float:
 
 
 @compiled
-def _release(knee: float, jump: Any) -> float:
-    """Return the share of the knee's torque before its lower stop: a ramp over ``knee_release_rad`` down to zero."""
-    if jump.knee_release_rad == 0.0:
-        return 1.0
-    share: float = min(max((knee - jump.lower_stop_rad[KNEE]) / jump.knee_release_rad, 0.0), 1.0)
-    return share
-
-
-@compiled
 def _command(wanted: tuple[float, float], share: tuple[float, float], speed: tuple[float, float], jump: Any) -> None:
     """Give the drivers the torques of this control period; they act on the command of ``delay_periods`` ago."""
     size = jump.commands.shape[0]
@@ -232,40 +259,6 @@ def _command(wanted: tuple[float, float], share: tuple[float, float], speed: tup
         for joint in range(2):
             torque = _limited(jump.commands[slot, joint], speed[joint], jump, joint)
             jump.motor_torque_n_m[joint] = jump.commands[slot, 2 + joint] * torque
-
-
-@compiled
-def _virtual_leg(
-    foot: tuple[float, float], shank: tuple[float, float], speed: tuple[float, float], jump: Any
-) -> tuple[float, float]:
-    """Return the torques of virtual spring, damper and torsional spring (paper, section II-B), before any limit.
-
-    ``foot`` and ``shank`` are the vectors (x, z) from hip to foot and from knee to foot.
-    """
-    # F_l, tau_t, F_x, F_z and tau = J^T F of the paper; alpha is positive with the foot behind the base.
-    # J: d rx / d hip = rz, d rz / d hip = -rx; d rx / d knee = shank_z, d rz / d knee = -shank_x.
-    (rx, rz), (shank_x, shank_z) = foot, shank
-    leg = math.sqrt(rx * rx + rz * rz)
-    sin, cos = -rx / leg, -rz / leg
-    alpha = math.atan2(-rx, -rz)
-    drx = rz * speed[HIP] + shank_z * speed[KNEE]
-    drz = -rx * speed[HIP] - shank_x * speed[KNEE]
-    dleg = (rx * drx + rz * drz) / leg
-    axial = jump.stiffness_n_per_m * (jump.rest_length_m - leg) - jump.damping_n_s_per_m * dleg
-    across = jump.torsional_stiffness_n_m_per_rad * (0.0 - alpha) / leg
-    fz = -axial * cos + across * sin - jump.weight_n
-    fx = -axial * sin - across * cos
-    return rz * fx - rx * fz, shank_z * fx - shank_x * fz
-
-
-@compiled
-def _held_pose(angle: tuple[float, float], speed: tuple[float, float], jump: Any) -> tuple[float, float]:
-    """Return torques of hip and knee that pull the leg back to its start pose in flight."""
-    stiffness, damping = jump.flight_stiffness_n_m_per_rad, jump.flight_damping_n_m_s_per_rad
-    return (
-        stiffness * (jump.start_rad[HIP] - angle[HIP]) - damping * speed[HIP],
-        stiffness * (jump.start_rad[KNEE] - angle[KNEE]) - damping * speed[KNEE],
-    )
 
 
 @compiled
@@ -300,7 +293,7 @@ def _delivered(torque: float, speed: float, jump: Any, joint: int) -> float:
 @compiled
 def _book(jump: Any, speed: tuple[float, float]) -> None:
     """Add up the step just made: its work is torque times the mean speed of the step, or the speed at its start."""
-    timestep = jump.timestep_s
+    timestep, bus = jump.timestep_s, 0.0
     for joint in range(2):
         torque, start = jump.motor_torque_n_m[joint], jump.speed_rad_per_s[joint]
         during = 0.5 * (start + speed[joint]) if jump.mean_speed > 0.0 else start
@@ -313,9 +306,11 @@ def _book(jump: Any, speed: tuple[float, float]) -> None:
         heating = jump.heat_w_per_n2_m2[joint] * torque * torque
         jump.joule_heat_j += heating * timestep
         jump.winding_heat_j[joint] += heating * timestep
-        electrical = power + heating
-        share = 1.0 if electrical > 0.0 else jump.regeneration_share
-        jump.electrical_energy_j += share * electrical * timestep
+        bus += power + heating
+        if jump.bus == 0.0 or joint == KNEE:
+            share = 1.0 if bus > 0.0 else jump.regeneration_share
+            jump.electrical_energy_j += share * bus * timestep
+            bus = 0.0
         jump.peak_torque_n_m[joint] = max(jump.peak_torque_n_m[joint], abs(torque))
         jump.peak_speed_rad_per_s[joint] = max(jump.peak_speed_rad_per_s[joint], abs(speed[joint]))
         jump.peak_power_w[joint] = max(jump.peak_power_w[joint], abs(power))
@@ -328,21 +323,30 @@ def _loads(v: Floats, jump: Any) -> None:
     The floor's force accelerates the whole robot. An end stop takes the moment about its joint of all that hangs below
     it, less the torques of actuator, floor and viscous friction; Coulomb friction is counted with the stop. A gearbox
     transmits the motor's torque less what accelerates the rotor; the chain transmits the knee's torque less what
-    accelerates everything before its sprocket. On a vertical guide the floor's force in x accelerates nothing. On a
-    stand it is what a joint that is off its stops needs besides its actuator; without a stand it is left out.
+    accelerates everything before its sprocket. With an elastic drive, what turns belongs to the motors, a joint gets
+    the torque of its spring, and that of the knee is the chain's. On a vertical guide the floor's force in x
+    accelerates nothing. On a stand it is what a joint that is off its stops needs besides its actuator; without a stand
+    it is left out.
     """
-    nv, timestep = v.shape[0], jump.timestep_s
+    timestep = jump.timestep_s
+    z, hip_joint, knee_joint, hip_motor, knee_motor = places(v.shape[0])
+    elastic = hip_motor != hip_joint
     hip, knee = (jump.directions[0], jump.directions[1]), (jump.directions[2], jump.directions[3])
     turn, turn_below = jump.velocity[2], jump.velocity[2] + jump.velocity[3]
-    ax = (v[0] - jump.velocity[0]) / timestep if nv == 4 else 0.0
-    az = (v[nv - 3] - jump.velocity[1]) / timestep + GRAVITY_M_PER_S2
-    spin_up, knee_spin_up = (v[nv - 2] - jump.velocity[2]) / timestep, (v[nv - 1] - jump.velocity[3]) / timestep
-    below_spin_up = spin_up + knee_spin_up
+    ax = (v[0] - jump.velocity[0]) / timestep if z == 1 else 0.0
+    az = (v[z] - jump.velocity[1]) / timestep + GRAVITY_M_PER_S2
+    spin_up, below_spin_up = (v[hip_joint] - jump.velocity[2]) / timestep, (v[knee_joint] - jump.velocity[3]) / timestep
+    jump.spin_up_rad_per_s2[HIP], jump.spin_up_rad_per_s2[KNEE] = spin_up, below_spin_up
+    below_spin_up += spin_up
+    motor_spin_up = (
+        (v[hip_motor] - jump.motor_rad_per_s[HIP]) / timestep,
+        (v[knee_motor] - jump.motor_rad_per_s[KNEE]) / timestep,
+    )
 
-    thigh = _turned(jump.thigh_com_m, hip)
-    to_knee = _turned((0.0, -jump.thigh_length_m), hip)
-    shank = _turned(jump.shank_com_m, knee)
-    to_floor = _turned((0.0, -jump.shank_length_m), knee)
+    thigh = turned(jump.thigh_com_m, hip)
+    to_knee = turned((0.0, -jump.thigh_length_m), hip)
+    shank = turned(jump.shank_com_m, knee)
+    to_floor = turned((0.0, -jump.shank_length_m), knee)
     at_knee = _accelerated((ax, az), to_knee, turn, spin_up)
     at_thigh = _accelerated((ax, az), thigh, turn, spin_up)
     at_shank = _accelerated(at_knee, shank, turn_below, below_spin_up)
@@ -350,22 +354,29 @@ def _loads(v: Floats, jump: Any) -> None:
     floor = (0.0, 0.0)
     if jump.position[1] + to_knee[1] + to_floor[1] - jump.foot_radius_m <= 0.0:
         fx = mass * ax + thigh_mass * at_thigh[0] + shank_mass * at_shank[0]
-        rails = math.copysign(jump.rail_friction_n, jump.velocity[1] + v[nv - 3])
+        rails = math.copysign(jump.rail_friction_n, jump.velocity[1] + v[z])
         fz = mass * az + thigh_mass * at_thigh[1] + shank_mass * at_shank[1] + rails
-        floor = (fx if nv == 4 else 0.0, fz)
+        floor = (fx if z == 1 else 0.0, fz)
 
     at_sole = (to_floor[0], to_floor[1] - jump.foot_radius_m)
     below = jump.link_inertia_kg_m2[1] * below_spin_up + shank_mass * _moment(shank, at_shank) - _moment(at_sole, floor)
     whole = below + jump.link_inertia_kg_m2[0] * spin_up + thigh_mass * _moment(thigh, at_thigh)
     pull = (shank_mass * at_shank[0] - floor[0], shank_mass * at_shank[1] - floor[1])
-    whole += _moment(to_knee, pull) + jump.coupling_kg_m2 * knee_spin_up
-    turning = jump.armature_kg_m2[KNEE] * knee_spin_up + jump.coupling_kg_m2 * spin_up
-    needed = (whole + jump.armature_kg_m2[HIP] * spin_up, below + turning)
+    whole += _moment(to_knee, pull) + jump.coupling_kg_m2 * motor_spin_up[KNEE]
+    turning = jump.armature_kg_m2[KNEE] * motor_spin_up[KNEE] + jump.coupling_kg_m2 * spin_up
+    if elastic:
+        needed, driven = (whole, below), (_spring(HIP, jump), _spring(KNEE, jump))
+        damped, chain = (0.0, 0.0), driven[KNEE]
+    else:
+        needed = (whole + jump.armature_kg_m2[HIP] * spin_up, below + turning)
+        driven = (jump.joint_torque_n_m[HIP], jump.joint_torque_n_m[KNEE])
+        damping = jump.joint_damping_n_m_s_per_rad
+        damped, chain = (damping[HIP] * v[hip_joint], damping[KNEE] * v[knee_joint]), driven[KNEE] - turning
+    jump.peak_chain_tension_n = max(jump.peak_chain_tension_n, abs(chain) / jump.sprocket_radius_m)
     if jump.stand_mass_kg > 0.0 and floor[1] != 0.0:
         free = HIP if jump.lower_stop_rad[HIP] <= jump.position[2] <= jump.upper_stop_rad[HIP] else KNEE
         arms = (at_sole[1] + to_knee[1], at_sole[1])
-        unmet = needed[free] - jump.joint_torque_n_m[free] + jump.joint_damping_n_m_s_per_rad[free] * v[nv - 2 + free]
-        fx = unmet / arms[free]
+        fx = (needed[free] - driven[free] + damped[free]) / arms[free]
         floor, pull = (fx, floor[1]), (pull[0] - fx, pull[1])
         needed = (needed[HIP] - arms[HIP] * fx, needed[KNEE] - arms[KNEE] * fx)
     jump.peak_foot_force_n = max(jump.peak_foot_force_n, math.sqrt(floor[0] * floor[0] + floor[1] * floor[1]))
@@ -373,23 +384,33 @@ def _loads(v: Floats, jump: Any) -> None:
 
     riding = spin_up if jump.coupling_kg_m2 > 0.0 else 0.0
     for joint in range(2):
-        acceleration = spin_up if joint == HIP else knee_spin_up
-        motor_spin_up = jump.ratio[joint] * acceleration + (riding if joint == KNEE else 0.0)
-        gear = abs(jump.motor_torque_n_m[joint] - jump.rotor_kg_m2[joint] * motor_spin_up)
+        rotor_spin_up = jump.ratio[joint] * motor_spin_up[joint] + (riding if joint == KNEE else 0.0)
+        gear = abs(jump.motor_torque_n_m[joint] - jump.rotor_kg_m2[joint] * rotor_spin_up)
         jump.peak_gear_torque_n_m[joint] = max(jump.peak_gear_torque_n_m[joint], gear)
-        angle, after = jump.position[2 + joint], v[nv - 2 + joint]
+        angle, after = jump.position[2 + joint], v[hip_joint + joint]
         if angle < jump.lower_stop_rad[joint] or angle > jump.upper_stop_rad[joint]:
-            stop = needed[joint] - jump.joint_torque_n_m[joint] + jump.joint_damping_n_m_s_per_rad[joint] * after
+            stop = needed[joint] - driven[joint] + damped[joint]
+            if jump.bumper_n_m[joint] > 0.0:
+                stop = jump.stop_torque_n_m[joint]
             jump.peak_stop_torque_n_m[joint] = max(jump.peak_stop_torque_n_m[joint], abs(stop))
             beyond = max(jump.lower_stop_rad[joint] - angle, angle - jump.upper_stop_rad[joint])
             jump.peak_beyond_stop_rad[joint] = max(jump.peak_beyond_stop_rad[joint], beyond)
             jump.stop_energy_j -= stop * 0.5 * (jump.velocity[2 + joint] + after) * timestep
-    tension = abs(jump.joint_torque_n_m[KNEE] - turning) / jump.sprocket_radius_m
-    jump.peak_chain_tension_n = max(jump.peak_chain_tension_n, tension)
 
 
 @compiled
-def _turned(vector: Any, direction: tuple[float, float]) -> tuple[float, float]:
+def _spring(joint: int, jump: Any) -> float:
+    """Return the torque on a joint of its elastic drive at the start of the last step, as MuJoCo's tendon pulls."""
+    wound = jump.motor_rad[joint] - jump.position[2 + joint]
+    play = 0.5 * jump.backlash_rad
+    slack = min(max(wound, -play), play)
+    rate = jump.motor_rad_per_s[joint] - jump.velocity[2 + joint]
+    torque: float = jump.drive_n_m_per_rad[joint] * (wound - slack) + jump.drive_n_m_s_per_rad[joint] * rate
+    return torque
+
+
+@compiled
+def turned(vector: Any, direction: tuple[float, float]) -> tuple[float, float]:
     """Return a vector (x, z) of a body frame in the world: turned about +y by the angle with this sine and cosine."""
     sin, cos = direction
     return cos * vector[0] + sin * vector[1], cos * vector[1] - sin * vector[0]

@@ -4,10 +4,13 @@
 "knee". Unlike the controller, this module does not import numba.
 """
 
+import zlib
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+HIP, KNEE = 0, 1
 TOUCH_M = 1e-9  #: Clearance that still counts as touching, because of rounding in the start pose.
 MOST_DELAY = 8  #: Control periods that a command can be late: 3 ms (bus and driver) at 0.5 ms each, and two more.
 
@@ -32,6 +35,7 @@ RECORD = np.dtype(
         ("stages", _ONE),  # calls per step: 4 for a Runge-Kutta integrator
         ("fade_length_m", _ONE),  # 0: torque only while the foot touches the floor
         *_each(_ONE, "latch", "loss_speed_rad_per_s", "voltage_limit", "lags", "mean_speed", "regeneration_share"),
+        ("bus", _ONE),  # whether both motors' electrical power is summed before what flows back is cut off
         # The robot.
         *_each(_ONE, "thigh_length_m", "shank_length_m", "foot_radius_m"),
         *_each(_ONE, "stiffness_n_per_m", "damping_n_s_per_m", "torsional_stiffness_n_m_per_rad"),
@@ -55,6 +59,11 @@ RECORD = np.dtype(
         ("rotor_kg_m2", _BOTH),  # of what turns at the motor's speed, times the ratio: torque per motor acceleration
         *_each(_BOTH, "ratio", "joint_damping_n_m_s_per_rad", "lower_stop_rad", "upper_stop_rad"),
         ("sprocket_radius_m", _ONE),
+        # Bumpers under Hunt and Crossley's law: torque, compression over diameter per angle, chi per joint speed.
+        *_each(_BOTH, "bumper_n_m", "bumper_per_rad", "bumper_s_per_rad"),
+        # Of an elastic drive: stiffness and damping between motor and joint, and the play between them.
+        *_each(_BOTH, "drive_n_m_per_rad", "drive_n_m_s_per_rad"),
+        ("backlash_rad", _ONE),
         # What the controller remembers from step to step.
         ("stage", _ONE),
         ("steps", _ONE),
@@ -80,13 +89,27 @@ RECORD = np.dtype(
         ("speed_rad_per_s", _BOTH),  # at the start of the current step
         ("motor_torque_n_m", _BOTH),  # during the current step, at the joint before losses
         ("joint_torque_n_m", _BOTH),  # the same after losses
+        ("stop_torque_n_m", _BOTH),  # of the bumpers during the current step, under Hunt and Crossley's law
+        ("spin_up_rad_per_s2", _BOTH),  # mean acceleration of hip and knee in the last step
         ("periods", _ONE),  # control periods so far
         ("quiet_periods", _ONE),  # control periods since the torque was switched off for good
         ("commands", _COMMANDS),  # of the last periods, in a ring: torques wanted of hip and knee, share of each
         ("position", _STATE),  # x, z, hip, knee at the start of the current step
         ("velocity", _STATE),
+        *_each(_BOTH, "motor_rad", "motor_rad_per_s"),  # of the motors there, as angles of their joints
         ("directions", _STATE),  # sine and cosine of the angles of thigh and shank there
     ],
     align=True,
 )  #: Everything the controller knows about one jump; pairs are hip, knee. MuJoCo's user data must be float64.
 RECORD_NUMBERS = RECORD.itemsize // 8  #: Length of a record in MuJoCo's user data.
+
+_COMPILED = ("controller.py", "virtual_leg.py", "planar.py")
+
+
+def origin() -> int:
+    """Return a number for everything in this folder that is compiled into the controller and the engine.
+
+    Numba's cache on disk notices changes of a function's own file and of what it closes over, but of no other file.
+    """
+    folder = Path(__file__).parent
+    return zlib.crc32(b"".join((folder / name).read_bytes() for name in _COMPILED) + repr(RECORD.descr).encode())

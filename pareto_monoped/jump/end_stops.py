@@ -33,6 +33,11 @@ def end_stops(robots: RobotArrays, joints: Joints) -> EndStops:
     return joints.hip_stop, joints.knee_stop
 
 
+def constraints(robots: RobotArrays, joints: Joints) -> EndStops:
+    """Return the end stops that MuJoCo has as joint limits: none under a law of our own."""
+    return (None, None) if joints.stop_law == "hunt_crossley" else end_stops(robots, joints)
+
+
 @functools.lru_cache(maxsize=16)
 def simulated(stop: JointStop) -> EndStop:
     """Return the end stop that behaves like a part: its slow torque is the least-squares fit over the bumper's travel.
@@ -58,6 +63,29 @@ def simulated(stop: JointStop) -> EndStop:
         found = rebound_rad_per_s(replace(undamped, damping_n_m_s_per_rad=middle), speed, IMPACT_KG_M2)
         low, high = (middle, high) if found > wanted else (low, middle)
     return replace(undamped, damping_n_m_s_per_rad=0.5 * (low + high))
+
+
+TEST_M_PER_S = (
+    1.4  #: Speed of the pendulum with which ISO 4662 measures rebound. Knees meet their stop with 1.3 to 1.6.
+)
+
+
+def damping_s_per_m(rebound_resilience: Floats) -> Floats:
+    """Return chi of bumpers that push back with f(x) (1 + chi v) and return a share of an impact's energy, shape (n,).
+
+    K. H. Hunt and F. R. E. Crossley, "Coefficient of restitution interpreted as damping in vibroimpact", J. Appl.
+    Mech. 42 (1975). For any f and any mass m, v dv / (1 + chi v) = -f dx / m. A body that comes with v and leaves with
+    e v has a - ln(1 + a) = -e a - ln(1 - e a), with a = chi v. The share, e^2, is that of ISO 4662, at the speed of its
+    test.
+    """
+    e = np.sqrt(rebound_resilience)
+    low, high = np.zeros_like(e), 1.0 / e
+    for _ in range(60):  # bisection: more damping, less rebound
+        middle = 0.5 * (low + high)
+        with np.errstate(divide="ignore"):
+            gentle = middle - np.log1p(middle) + e * middle + np.log1p(-e * middle) > 0.0
+        low, high = np.where(gentle, middle, low), np.where(gentle, high, middle)
+    return np.asarray(0.5 * (low + high) / TEST_M_PER_S)
 
 
 def slow_torque_n_m(stop: EndStop, beyond_rad: Floats) -> Floats:

@@ -21,9 +21,11 @@ from pareto_monoped.design import (
     nonsense,
 )
 from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.controller_record import HIP, KNEE
+from pareto_monoped.jump.engines import Jumping, population_of
 from pareto_monoped.jump.gravity import rise_m, standing_height_m
 from pareto_monoped.jump.model import start_pose
-from pareto_monoped.jump.population import Population, Records, prepare
+from pareto_monoped.jump.population import Records
 from pareto_monoped.jump.variations import Variations, joined, take, varied_control, varied_robots
 from pareto_monoped.measures import MEASURE_NAMES, JumpMeasures
 from pareto_monoped.robot.population import JointStops, RobotArrays, robot_arrays
@@ -193,17 +195,19 @@ def _jump(
         chosen = ready[start : start + _CHUNK]
         jumping = take(robots, chosen)
         own = None if variations is None else take(variations, chosen)
-        population = prepare(jumping, control[chosen], take(pose, chosen), calibration, workers, own)
+        population = population_of(jumping, control[chosen], take(pose, chosen), calibration, workers, own)
         population.run()
         _collect(population, jumping, calibration, table, rows[chosen])
 
 
 def _collect(
-    population: Population, robots: RobotArrays, calibration: Calibration, table: _Table, rows: NDArray[np.intp]
+    population: Jumping,
+    robots: RobotArrays,
+    calibration: Calibration,
+    table: _Table,
+    rows: NDArray[np.intp],
 ) -> None:
     """Fill ``rows`` of the table with the ends and measures of a population that has run."""
-    from pareto_monoped.jump.controller import HIP, KNEE
-
     records, step, drive = population.records, calibration.simulation.timestep_s, calibration.drive
     energy = records["energy_j"][:, HIP] + records["energy_j"][:, KNEE]
     _name_failures(population, energy, step, table, rows)
@@ -256,9 +260,7 @@ def _by_joint(name: str, values: Floats) -> dict[str, Floats]:
     return {name.format(joint): values[:, k] for k, joint in enumerate(JOINTS)}
 
 
-def _name_failures(
-    population: Population, energy_j: Floats, step_s: float, table: _Table, rows: NDArray[np.intp]
-) -> None:
+def _name_failures(population: Jumping, energy_j: Floats, step_s: float, table: _Table, rows: NDArray[np.intp]) -> None:
     """Give every jump that did not reach its apex, or reached it without work, its status and reason."""
     from pareto_monoped.jump import controller
 

@@ -1,4 +1,4 @@
-"""Robot -> MuJoCo: the start pose, the MJCF document of one robot, and the same numbers as model fields for a batch.
+"""Robot -> MuJoCo: the start pose, and the numbers of MuJoCo's model; ``document`` writes them as MJCF.
 
 World frame: x forward, z up, floor at z = 0. The joints turn about +y. At zero both links hang straight down; a
 negative hip angle swings the thigh forward, and a positive knee angle is flexion. The base slides and does not pitch.
@@ -6,7 +6,6 @@ On a stand it slides on vertical rails only, and its mass includes what holds it
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +17,8 @@ from pareto_monoped.leg.stand import CARRIAGES
 from pareto_monoped.robot.population import RobotArrays
 from pareto_monoped.robot.units import JOINTS
 
+KNEE = JOINTS.index("knee")
+_COPPER_PER_K = 0.00393  #: Relative rise of copper's resistance per kelvin from 20 degC (IEC 60028).
 LEAST_IMPEDANCE = 0.0001  #: MuJoCo's smallest impedance (mjMINIMP), which a hardening spring has at first touch.
 
 
@@ -105,76 +106,74 @@ def slow_force_n(contact: SpringContact, compression_m: NDArray[np.float64]) -> 
     return np.asarray(scale * compression_m)
 
 
-# Body numbers in the model; the world is 0.
-BASE, THIGH, SHANK = 1, 2, 3
+# Body numbers in the model; the world is 0. The last two turn with the motors of an elastic drive.
+BASE, THIGH, SHANK, KNEE_MOTOR, HIP_MOTOR = 1, 2, 3, 4, 5
+_NEARLY_NOTHING = 1e-13
+"""Mass in kg, and inertia in kg m2, of a body that only carries a coordinate; MuJoCo allows no 0."""
+
+
+def coordinates(calibration: Calibration) -> tuple[str, ...]:
+    """Return names of the model's joints in the order of positions and speeds; see ``controller``."""
+    slides = ("slide_x", "slide_z") if calibration.simulation.base_slides else ("slide_z",)
+    return (*slides, "hip", "knee", *(("knee_motor", "hip_motor") if calibration.drive.elastic else ()))
+
+
+def motor_places(calibration: Calibration) -> list[int]:
+    """Return where the coordinates of both motors stand, hip first; without an elastic drive those of the joints."""
+    names = coordinates(calibration)
+    return [names.index(f"{joint}_motor" if calibration.drive.elastic else joint) for joint in JOINTS]
+
+
+def joint_places(calibration: Calibration) -> list[int]:
+    """Return where hip and knee stand among the coordinates."""
+    return [coordinates(calibration).index(joint) for joint in JOINTS]
+
+
 FOOT_GEOM = 1
-# Midpoint and power of MuJoCo's impedance curve: a straight line, and its default sigmoid.
-_LINEAR, _SIGMOID = (0.5, 1.0), (0.5, 2.0)
-
-
-def mjcf(robots: RobotArrays, calibration: Calibration, index: int = 0, *, comment: str = "") -> str:
-    """Return the MJCF document of robot ``index``, which is exactly what a batch simulates for that robot."""
-    import mujoco
-
-    fields = {name: values[index] for name, values in model_fields(robots, calibration).items()}
-    pose = start_pose(robots, calibration)
-    start = start_qpos(calibration, robots.start_height_m, pose)[index]
-    # Springs in N/m need inverse masses that only MuJoCo's compiler computes, so compile a draft without them first.
-    stops = end_stops(robots, calibration.joints)
-    draft = mujoco.MjModel.from_xml_string(_document(fields, start, calibration, stops, None, comment))
-    springs = spring_fields(calibration, stops, draft.body_invweight0[None, :, :], draft.dof_invweight0[None, :])
-    values = {name: values[0] for name, values in springs.items()}
-    return _document(fields, start, calibration, stops, values, comment)
-
-
-def template_mjcf(calibration: Calibration, stops: EndStops, user_data: int) -> str:
-    """Return the MJCF document of a robot with round numbers; a batch overwrites the fields of each robot."""
-    fields = {
-        "body_mass": np.ones(4),
-        "body_ipos": np.zeros((4, 3)),
-        "body_inertia": np.ones((4, 3)),
-        "body_pos": np.array([[0.0, 0.0, 0.0]] * 3 + [[0.0, 0.0, -0.4]]),
-        "site_pos": np.array([[0.0, 0.0, -0.4]]),
-        "geom_size": np.array([[0.0, 0.0, 1.0], [0.03, 0.0, 0.0]]),
-        "dof_armature": np.ones(4),
-        "dof_damping": np.ones(4),
-        "actuator_ctrlrange": np.array([[-1.0, 1.0], [-1.0, 1.0]]),
-        "tendon_armature": np.ones(1),
-        "wrap_prm": np.ones(2),
-    }
-    start = np.zeros(4 if calibration.simulation.base_slides else 3)
-    size = f'<size nuserdata="{user_data}"/>'
-    return _document(fields, start, calibration, stops, None, "").replace("<worldbody>", f"{size}\n  <worldbody>", 1)
 
 
 def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Floats]:
     """Return the model fields that differ between robots: MuJoCo's name -> values of shape (n, ...)."""
-    n, slides = len(robots), calibration.simulation.base_slides
-    mass, com, inertia = (np.zeros((n, 4, *tail)) for tail in ((), (3,), (3,)))
-    mass[:, 1:] = robots.body_mass_kg
+    n, names, elastic = len(robots), coordinates(calibration), calibration.drive.elastic
+    motors, joints = motor_places(calibration), calibration.joints
+    bodies = 6 if elastic else 4
+    mass, com, inertia = (np.zeros((n, bodies, *tail)) for tail in ((), (3,), (3,)))
+    mass[:, 1:4] = robots.body_mass_kg
     mass[:, BASE] += stand_mass_kg(robots, calibration)
-    com[:, 1:] = robots.body_com_m
+    com[:, 1:4] = robots.body_com_m
     # All rotation is about y, so only the yy moment acts; products of inertia would load guides that are not modelled.
-    inertia[:, 1:] = np.diagonal(robots.body_inertia_kg_m2, axis1=-2, axis2=-1)
-    position = np.zeros((n, 4, 3))
+    inertia[:, 1:4] = np.diagonal(robots.body_inertia_kg_m2, axis1=-2, axis2=-1)
+    position = np.zeros((n, bodies, 3))
     position[:, SHANK, 2] = -robots.thigh_length_m
     foot = np.zeros((n, 1, 3))
     foot[:, 0, 2] = -robots.shank_length_m
-    armature = np.zeros((n, 4 if slides else 3))
-    armature[:, -2:] = robots.armature_kg_m2
-    rotor = {}
-    if calibration.joints.rotors == "absolute":
+    armature, damping, friction = np.zeros((3, n, len(names)))
+    armature[:, motors] = robots.armature_kg_m2
+    damping[:, motors] = joint_damping(robots, joints)
+    friction[:, motors] = joint_friction_n_m(robots, calibration)
+    friction[:, names.index("slide_z")] = rail_friction_n(calibration)
+    tendons = []  # armature, stiffness, damping, then both coefficients; in the order of ``_tendons``
+    if elastic:
+        mass[:, KNEE_MOTOR:] = inertia[:, KNEE_MOTOR:] = _NEARLY_NOTHING
+        damper = drive_damping_n_m_s_per_rad(robots, calibration)
+        stiffness, none = robots.drive_stiffness_n_m_per_rad, np.zeros(n)
+        tendons = [(none, stiffness[:, k], damper[:, k], none + 1.0, none - 1.0) for k in range(len(JOINTS))]
+    if joints.rotors == "absolute":
         # One tendon of the coordinate hip + c knee with the armature J adds J [1, c; c, c^2] to the mass matrix
-        # (MuJoCo's documentation, "tendon-fixed"). J c and J c^2 are the sums B and C; J itself leaves the thigh.
+        # (MuJoCo's documentation, "tendon-fixed"). J c and J c^2 are the sums B and C; J itself leaves the thigh. With
+        # an elastic drive the knee's motor takes the place of the knee.
         coupling, reflected = robots.knee_coupling_kg_m2, robots.knee_reflected_kg_m2
         tendon = np.divide(coupling**2, reflected, out=np.zeros(n), where=reflected > 0.0)
         lever = np.divide(reflected, coupling, out=np.zeros(n), where=coupling > 0.0)
-        armature[:, -1] = 0.0
+        armature[:, motors[KNEE]] = 0.0
         inertia[:, THIGH, 1] += robots.rotor_excess_kg_m2 - tendon
-        rotor = {"tendon_armature": tendon[:, None], "wrap_prm": np.stack([np.ones(n), lever], axis=1)}
-    joints = calibration.joints
-    damping = np.zeros_like(armature)
-    damping[:, -2:] = joint_damping(robots, joints)
+        tendons.append((tendon, np.zeros(n), np.zeros(n), np.ones(n), lever))
+    coupled = {}
+    if tendons:
+        numbers = np.array(tendons)  # shape (tendons, 5, n)
+        names_of = ("tendon_armature", "tendon_stiffness", "tendon_damping")
+        coupled = {name: numbers[:, k].T for k, name in enumerate(names_of)}
+        coupled["wrap_prm"] = np.moveaxis(numbers[:, 3:], -1, 0).reshape(n, -1)
     limit = torque_limit(robots, calibration.drive)
     return {
         "body_mass": mass,
@@ -188,9 +187,16 @@ def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Flo
         ),
         "dof_armature": armature,
         "dof_damping": damping,
-        "actuator_ctrlrange": np.stack([-limit, limit], axis=-1),
-        **rotor,
+        "dof_frictionloss": friction,
+        "actuator_ctrlrange": _control_range(limit, joints),
+        **coupled,
     }
+
+
+def _control_range(limit_n_m: Floats, joints: Joints) -> Floats:
+    """Return the range of every actuator: the motors', then those of the end stops, which have none."""
+    limits = limit_n_m if joints.stop_law == "constraint" else np.concatenate([limit_n_m, 0.0 * limit_n_m], axis=1)
+    return np.stack([-limits, limits], axis=-1)
 
 
 def stand_mass_kg(robots: RobotArrays, calibration: Calibration) -> Floats:
@@ -205,7 +211,31 @@ def rail_friction_n(calibration: Calibration) -> float:
 
 def joint_damping(robots: RobotArrays, joints: Joints) -> Floats:
     """Return viscous friction of hip and knee with their motors', N m s/rad, shape (n, 2)."""
-    return joints.damping_n_m_s_per_rad + joints.motor_damping_n_m_s_per_rad * np.square(robots.ratio)
+    damping = joints.damping_n_m_s_per_rad + joints.motor_damping_n_m_s_per_rad * np.square(robots.ratio)
+    if joints.motor_damping_share_s_per_rad:
+        damping = damping + joints.motor_damping_share_s_per_rad * robots.peak_torque_n_m * robots.ratio
+    return damping
+
+
+def joint_friction_n_m(robots: RobotArrays, calibration: Calibration) -> Floats:
+    """Return Coulomb friction of hip and knee, shape (n, 2)."""
+    joints = calibration.joints
+    return joints.friction_n_m + joints.friction_share * robots.peak_torque_n_m
+
+
+def drive_damping_n_m_s_per_rad(robots: RobotArrays, calibration: Calibration) -> Floats:
+    """Return the damping of both elastic drives: 2 zeta sqrt(k C), shape (n, 2)."""
+    turning = robots.armature_kg_m2.copy()
+    if calibration.joints.rotors == "absolute":
+        turning[:, KNEE] = robots.knee_reflected_kg_m2
+    return np.asarray(
+        2.0 * calibration.drive.drive_damping_ratio * np.sqrt(robots.drive_stiffness_n_m_per_rad * turning)
+    )
+
+
+def winding_resistance_ohm(robots: RobotArrays, drive: Drive) -> Floats:
+    """Return the resistance of the warm windings, shape (n, 2)."""
+    return robots.winding_resistance_ohm * (1.0 + _COPPER_PER_K * drive.winding_rise_k)
 
 
 def gear_efficiency(robots: RobotArrays, drive: Drive) -> Floats:
@@ -252,104 +282,7 @@ def spring_fields(
 
 
 def start_qpos(calibration: Calibration, height_m: Floats, pose: StartPose) -> Floats:
-    """Joint positions at rest: x (unless the base is on a vertical guide), z, hip, knee; shape (n, 4) or (n, 3)."""
-    columns = [height_m, pose.hip_rad, pose.knee_rad]
-    if calibration.simulation.base_slides:
-        columns.insert(0, np.zeros(len(height_m)))
-    return np.stack(columns, axis=1)
-
-
-def _document(
-    fields: dict[str, Any],
-    start: Floats,
-    calibration: Calibration,
-    stops: EndStops,
-    springs: dict[str, Any] | None,
-    comment: str,
-) -> str:
-    """Return the XML text of one robot; reading its numbers gives the same bits."""
-    simulation, joints = calibration.simulation, calibration.joints
-    friction_loss = f' frictionloss="{_n(joints.friction_n_m)}"' if joints.friction_n_m else ""
-    contact = calibration.contact
-    if isinstance(contact, SpringContact):
-        foot_solref = springs["geom_solref"] if springs else (-1.0, -1.0)
-        solimp = (LEAST_IMPEDANCE, contact.impedance, contact.width_m, *_LINEAR)
-        slip_ratio, cone = contact.slip_ratio, "elliptic"
-    else:
-        foot_solref = (contact.time_constant_s, contact.damping_ratio)
-        solimp = (contact.impedance_min, contact.impedance_max, contact.impedance_width_m, *_SIGMOID)
-        slip_ratio, cone = 1.0, "pyramidal"
-
-    def hinge(k: int, name: str) -> str:
-        limit, stop = "", stops[k]
-        if stop is not None:
-            solref = springs["jnt_solref"][k] if springs else (-1.0, -1.0)
-            solimp = (LEAST_IMPEDANCE, stop.impedance, stop.width_rad, *_LINEAR)
-            limit = (
-                f' limited="true" range="{_n(stop.lower_rad, stop.upper_rad)}" solreflimit="{_n(*solref)}"'
-                f' solimplimit="{_n(*solimp)}"'
-            )
-        armature, damping = fields["dof_armature"][-2 + k], fields["dof_damping"][-2 + k]
-        return (
-            f'<joint name="{name}" type="hinge" axis="0 1 0" armature="{_n(armature)}" damping="{_n(damping)}"'
-            f"{friction_loss}{limit}/>"
-        )
-
-    def inertial(body: int) -> str:
-        return (
-            f'<inertial pos="{_n(*fields["body_ipos"][body])}" mass="{_n(fields["body_mass"][body])}"'
-            f' diaginertia="{_n(*fields["body_inertia"][body])}"/>'
-        )
-
-    rails = f' frictionloss="{_n(friction_n)}"' if (friction_n := rail_friction_n(calibration)) else ""
-    slide_x = '\n      <joint name="slide_x" type="slide" axis="1 0 0"/>' if simulation.base_slides else ""
-    foot = _n(*fields["site_pos"][0])
-    tendon = ""
-    if joints.rotors == "absolute":
-        tendon = f"""
-  <tendon>
-    <fixed name="knee_rotor" armature="{_n(*fields["tendon_armature"])}">
-      <joint joint="hip" coef="{_n(fields["wrap_prm"][0])}"/>
-      <joint joint="knee" coef="{_n(fields["wrap_prm"][1])}"/>
-    </fixed>
-  </tendon>"""
-    head = f"<!-- {comment.replace('--', '- -')} -->\n" if comment else ""
-    return f"""{head}<mujoco model="pareto_monoped {calibration.label}">
-  <compiler angle="radian" autolimits="false"/>
-  <option timestep="{_n(simulation.timestep_s)}" integrator="{simulation.integrator}" cone="{cone}" \
-impratio="{_n(slip_ratio)}" gravity="0 0 {_n(-GRAVITY_M_PER_S2)}" solver="Newton" tolerance="1e-12">
-    <flag island="disable" midphase="disable" autoreset="disable"/>
-  </option>
-  <worldbody>
-    <light pos="0 -2 3" dir="0 0.5 -1"/>
-    <geom name="floor" type="plane" size="0 0 1"/>
-    <body name="base">{slide_x}
-      <joint name="slide_z" type="slide" axis="0 0 1"{rails}/>
-      {inertial(BASE)}
-      <body name="thigh">
-        {hinge(0, "hip")}
-        {inertial(THIGH)}
-        <body name="shank" pos="{_n(*fields["body_pos"][SHANK])}">
-          {hinge(1, "knee")}
-          {inertial(SHANK)}
-          <geom name="foot" type="sphere" size="{_n(fields["geom_size"][FOOT_GEOM][0])}" pos="{foot}" priority="1" \
-friction="{_n(contact.friction)} 0.005 0.0001" solref="{_n(*foot_solref)}" solimp="{_n(*solimp)}"/>
-          <site name="foot" pos="{foot}"/>
-        </body>
-      </body>
-    </body>
-  </worldbody>{tendon}
-  <actuator>
-    <motor name="hip" joint="hip" gear="1" ctrllimited="true" ctrlrange="{_n(*fields["actuator_ctrlrange"][0])}"/>
-    <motor name="knee" joint="knee" gear="1" ctrllimited="true" ctrlrange="{_n(*fields["actuator_ctrlrange"][1])}"/>
-  </actuator>
-  <keyframe>
-    <key name="start" qpos="{_n(*start)}"/>
-  </keyframe>
-</mujoco>
-"""
-
-
-def _n(*values: float) -> str:
-    """Return numbers, each as the shortest text that reads back to the same bits."""
-    return " ".join(repr(float(value)) for value in values)
+    """Joint positions at rest, in the order of ``coordinates``, shape (n, nv); the drives are not wound up."""
+    known = {"slide_x": np.zeros(len(height_m)), "slide_z": height_m}
+    known |= dict.fromkeys(("hip", "hip_motor"), pose.hip_rad) | dict.fromkeys(("knee", "knee_motor"), pose.knee_rad)
+    return np.stack([known[name] for name in coordinates(calibration)], axis=1)

@@ -11,13 +11,15 @@ from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, PAPER_CONTROL, REST
 from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
-from pareto_monoped.jump.controller_record import RECORD, RECORD_NUMBERS
-from pareto_monoped.jump.end_stops import EndStops, end_stops
+from pareto_monoped.jump.controller_record import KNEE, RECORD, RECORD_NUMBERS
+from pareto_monoped.jump.document import template_mjcf
+from pareto_monoped.jump.end_stops import EndStops, constraints, damping_s_per_m, end_stops
 from pareto_monoped.jump.model import StartPose, start_pose
 from pareto_monoped.jump.quiet import quiet
 from pareto_monoped.jump.variations import Variations, vary_fields, vary_records
+from pareto_monoped.leg.stops import JointStop
 from pareto_monoped.robot.population import RobotArrays
-from pareto_monoped.robot.units import BODIES
+from pareto_monoped.robot.units import BODIES, JOINTS
 
 Records = NDArray[np.void]
 
@@ -101,7 +103,7 @@ def prepare(
     import mujoco
     from mujoco.batch import Batch
 
-    stops = end_stops(robots, calibration.joints)
+    stops = constraints(robots, calibration.joints)
     batch = Batch(_template(calibration, stops), len(robots), nthread=threads)
     for name, values in model.model_fields(robots, calibration).items():
         batch.expand(name)[:] = values
@@ -111,13 +113,13 @@ def prepare(
     if "geom_solref" in springs:
         batch.expand("geom_solref")[:, model.FOOT_GEOM] = springs["geom_solref"]
     if "jnt_solref" in springs:
-        batch.expand("jnt_solref")[:, -2:] = springs["jnt_solref"]
+        batch.expand("jnt_solref")[:, model.joint_places(calibration)] = springs["jnt_solref"]
     _component(batch, mujoco.mjtState.mjSTATE_QPOS)[:] = model.start_qpos(calibration, robots.start_height_m, pose)
     records = _component(batch, mujoco.mjtState.mjSTATE_USERDATA).view(RECORD)[:, 0]
     records[:] = first_records(robots, control, calibration)
     if variations is not None:
-        vary_fields(batch, model.FOOT_GEOM, variations)
-        vary_records(records, calibration, variations)
+        vary_fields(batch, calibration, variations)
+        vary_records(records, robots.stops, calibration, variations)
     return Population(batch=batch, records=records)
 
 
@@ -140,7 +142,7 @@ def _template(calibration: Calibration, stops: EndStops) -> Any:
     """Return a model of a robot with round numbers; ``prepare`` overwrites every field that differs between robots."""
     import mujoco
 
-    return mujoco.MjModel.from_xml_string(model.template_mjcf(calibration, stops, RECORD_NUMBERS))
+    return mujoco.MjModel.from_xml_string(template_mjcf(calibration, stops, RECORD_NUMBERS))
 
 
 def first_records(robots: RobotArrays, control: Floats, calibration: Calibration) -> Records:
@@ -165,6 +167,7 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
     for name in ("loss_speed_rad_per_s", "regeneration_share", "voltage_limit"):
         records[name] = getattr(drive, name)
     records["mean_speed"] = simulation.work_speed == "mean"
+    records["bus"] = drive.battery == "bus"
 
     for name in ("thigh_length_m", "shank_length_m", "foot_radius_m", "no_load_speed_rad_per_s"):
         records[name] = getattr(robots, name)
@@ -187,12 +190,13 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
     # The voltage-speed line R i + k_t w = k_t w_0 meets the peak current at the corner speed.
     volts_per_speed = robots.ratio * robots.torque_constant_n_m_per_a
     current = limit / volts_per_speed
-    corner = robots.no_load_speed_rad_per_s - robots.winding_resistance_ohm * current / volts_per_speed
+    resistance = model.winding_resistance_ohm(robots, drive)
+    corner = robots.no_load_speed_rad_per_s - resistance * current / volts_per_speed
     records["corner_speed_rad_per_s"] = corner
     efficiency = model.gear_efficiency(robots, drive)
-    efficiency[:, controller.KNEE] *= drive.chain_efficiency
+    efficiency[:, KNEE] *= drive.chain_efficiency
     records["loss"] = 1.0 - efficiency
-    records["heat_w_per_n2_m2"] = robots.winding_resistance_ohm / volts_per_speed**2
+    records["heat_w_per_n2_m2"] = resistance / volts_per_speed**2
     _set_load_constants(records, robots, calibration)
     return records
 
@@ -217,4 +221,16 @@ def _set_load_constants(records: Records, robots: RobotArrays, calibration: Cali
     for k, stop in enumerate(end_stops(robots, joints)):
         records["lower_stop_rad"][:, k] = -np.inf if stop is None else stop.lower_rad
         records["upper_stop_rad"][:, k] = np.inf if stop is None else stop.upper_rad
+    if joints.stop_law == "hunt_crossley":
+        for k, joint in enumerate(JOINTS):
+            part: JointStop = getattr(robots.stops, joint)
+            lever_m = 1e-3 * part.lever_mm
+            records["bumper_n_m"][:, k] = lever_m * part.bumper.scale_n
+            records["bumper_per_rad"][:, k] = part.lever_mm / part.bumper.diameter_mm
+            chi = damping_s_per_m(np.array([part.bumper.elastomer.rebound_resilience]))
+            records["bumper_s_per_rad"][:, k] = chi * lever_m
+    if calibration.drive.elastic:
+        records["drive_n_m_per_rad"] = robots.drive_stiffness_n_m_per_rad
+        records["drive_n_m_s_per_rad"] = model.drive_damping_n_m_s_per_rad(robots, calibration)
+        records["backlash_rad"] = calibration.drive.backlash_rad
     records["sprocket_radius_m"] = robots.sprocket_radius_m

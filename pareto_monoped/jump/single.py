@@ -4,8 +4,9 @@ The loop runs plain ``mj_step`` on the exported MJCF with the compiled controlle
 bit.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -13,11 +14,14 @@ import numpy as np
 from pareto_monoped.actuator.ratiomap import Maps
 from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, Design, Floats, columns
 from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.controller_record import origin
+from pareto_monoped.jump.document import mjcf
 from pareto_monoped.jump.evaluate import Evaluator
-from pareto_monoped.jump.model import mjcf, stand_mass_kg
+from pareto_monoped.jump.model import coordinates, stand_mass_kg
 from pareto_monoped.jump.quiet import quiet
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
+from pareto_monoped.robot.units import JOINTS
 
 TRACE_COLUMNS = (
     "time_s", "base_x_m", "base_z_m", "base_x_m_per_s", "base_z_m_per_s",
@@ -85,9 +89,9 @@ def moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> I
     import mujoco
 
     from pareto_monoped.jump.controller import FLYING
-    from pareto_monoped.jump.controller import control as act
     from pareto_monoped.jump.population import first_records
 
+    act = _controller(origin())
     model = mujoco.MjModel.from_xml_string(mjcf(robots, calibration))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
@@ -121,6 +125,20 @@ def moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> I
                 return
 
 
+@lru_cache(maxsize=1)
+def _controller(sources: int) -> Callable[[Floats, Floats, Floats, Any], None]:
+    """Return the compiled controller, which closes over ``sources`` (``controller_record.origin``)."""
+    from pareto_monoped.compute.compiled import compiled
+    from pareto_monoped.jump.controller import control
+
+    @compiled
+    def act(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
+        _ = sources
+        control(q, v, ctrl, jump)
+
+    return act
+
+
 def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> dict[str, Floats]:
     """Return ``TRACE_COLUMNS`` of the first robot's jump, each of shape (steps,)."""
     import mujoco
@@ -129,17 +147,18 @@ def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> 
     moved_kg = robots.body_mass_kg[0].sum() + stand_mass_kg(robots, calibration)[0]
     weight_n = float(moved_kg) * GRAVITY_M_PER_S2
     radius = float(robots.foot_radius_m[0])
+    slides = calibration.simulation.base_slides
+    z, hip, knee = (coordinates(calibration).index(name) for name in ("slide_z", *JOINTS))
     for index, moment in enumerate(moments(robots, control, calibration)):
         data, q, v = moment.data, moment.qpos, moment.qvel
-        slides = len(q) == 4
         foot = data.site_xpos[0]
         force = constraint_forces(data)[2]
         matrix = np.zeros((len(v), len(v)))
         mujoco.mj_fullM(moment.model, data, matrix)
-        torques = (0.0,) * 4 if moment.last else (*moment.record["motor_torque_n_m"], *data.ctrl)
-        base = (q[0] if slides else 0.0, q[-3], v[0] if slides else 0.0, v[-3])
-        legs = (foot[0], foot[2], foot[2] - radius, q[-2], q[-1], v[-2], v[-1])
-        floor = (force[0] if slides else float("nan"), force[-3])
+        torques = (0.0,) * 4 if moment.last else (*moment.record["motor_torque_n_m"], *data.ctrl[:2])
+        base = (q[0] if slides else 0.0, q[z], v[0] if slides else 0.0, v[z])
+        legs = (foot[0], foot[2], foot[2] - radius, q[hip], q[knee], v[hip], v[knee])
+        floor = (force[0] if slides else float("nan"), force[z])
         energies = (0.5 * v @ matrix @ v, weight_n * float(data.subtree_com[0, 2]))
         rows.append((index * calibration.simulation.timestep_s, *base, *legs, *torques, *floor, *energies))
     return dict(zip(TRACE_COLUMNS, np.array(rows).T, strict=True))

@@ -14,8 +14,11 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import CONTROL, PAPER_CONTROL, Floats
 from pareto_monoped.jump.calibration import Calibration
-from pareto_monoped.robot.population import RobotArrays
-from pareto_monoped.robot.units import BODIES
+from pareto_monoped.jump.controller_record import KNEE
+from pareto_monoped.jump.end_stops import damping_s_per_m
+from pareto_monoped.jump.model import FOOT_GEOM, coordinates, joint_places, motor_places
+from pareto_monoped.robot.population import JointStops, RobotArrays
+from pareto_monoped.robot.units import BODIES, JOINTS
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -37,6 +40,12 @@ class Variations:
     link_lengths_m: Floats  #: added to thigh and shank, shape (n, 2)
     gains: Floats  #: factors on K, C and T, shape (n, 3)
     delays_s: Floats  #: added to the delay of the calibration, in which they count as whole control periods, shape (n,)
+    #: gear_loss, chain_loss: factors on what both gearboxes and the chain lose, shape (n,)
+    gear_loss: Floats
+    chain_loss: Floats
+    winding_resistance: Floats  #: factors, shape (n,)
+    rotor_inertia: Floats  #: factors on that of what turns at the motors' speed, shape (n,)
+    rebound: Floats  #: factors on the share of an impact's energy that the bumpers give back, shape (n,)
     #: stand_mass, rail_friction: factors on what the base lifts on a stand and on the friction of its rails, shape (n,)
     stand_mass: Floats
     rail_friction: Floats
@@ -47,8 +56,20 @@ class Variations:
 
 def varied_robots(robots: RobotArrays, variations: Variations) -> RobotArrays:
     """Return the robots as built. Centres of mass stay, and so does the mass of a link that is a little longer."""
+    knee = JOINTS.index("knee")
+    more_kg_m2 = robots.rotor_inertia_kg_m2 * (variations.rotor_inertia - 1.0)[:, None]
+    reflected_kg_m2 = more_kg_m2 * np.square(robots.ratio)
+    less = (1.0 - variations.gear_loss)[:, None]  # of the losses, which may also be more
     return replace(
         robots,
+        rotor_inertia_kg_m2=robots.rotor_inertia_kg_m2 + more_kg_m2,
+        armature_kg_m2=robots.armature_kg_m2 + reflected_kg_m2,
+        knee_reflected_kg_m2=robots.knee_reflected_kg_m2 + reflected_kg_m2[:, knee],
+        knee_coupling_kg_m2=robots.knee_coupling_kg_m2 + more_kg_m2[:, knee] * robots.ratio[:, knee],
+        rotor_excess_kg_m2=robots.rotor_excess_kg_m2 + more_kg_m2[:, knee],
+        efficiency=robots.efficiency + less * (1.0 - robots.efficiency),
+        efficiency_total=robots.efficiency_total + less * (1.0 - robots.efficiency_total),
+        winding_resistance_ohm=robots.winding_resistance_ohm * variations.winding_resistance[:, None],
         body_mass_kg=robots.body_mass_kg * variations.masses,
         body_inertia_kg_m2=robots.body_inertia_kg_m2 * variations.masses[:, :, None, None],
         peak_torque_n_m=robots.peak_torque_n_m * variations.peak_torques,
@@ -66,8 +87,8 @@ def varied_control(control: Floats, variations: Variations) -> Floats:
     return varied
 
 
-def vary_records(records: Any, calibration: Calibration, variations: Variations) -> None:
-    """Change the controller's records of varied robots: their delay, their friction, and the mass that it knows."""
+def vary_records(records: Any, stops: JointStops, calibration: Calibration, variations: Variations) -> None:
+    """Change the controller's records of varied robots: delay, friction, bumpers, chain, and the mass that it knows."""
     true = records["body_mass_kg"]
     known = true / variations.masses
     if calibration.controller.weight == "robot":
@@ -76,20 +97,30 @@ def vary_records(records: Any, calibration: Calibration, variations: Variations)
         records["weight_n"] *= known[:, BODIES.index("base")] / true[:, BODIES.index("base")]
     records["joint_damping_n_m_s_per_rad"] *= variations.damping[:, None]
     records["rail_friction_n"] *= variations.rail_friction
+    records["bumper_n_m"] *= variations.stop_stiffness[:, None]
+    chain = calibration.drive.chain_efficiency
+    records["loss"][:, KNEE] += (1.0 - records["loss"][:, KNEE]) * (variations.chain_loss - 1.0) * (1.0 - chain) / chain
+    for k, joint in enumerate(JOINTS):
+        rebound = getattr(stops, joint).bumper.elastomer.rebound_resilience
+        changed = damping_s_per_m(rebound * variations.rebound) / damping_s_per_m(np.array([rebound]))
+        records["bumper_s_per_rad"][:, k] *= changed
     records["delay_periods"] += np.round(variations.delays_s / calibration.simulation.period_s)
 
 
-def vary_fields(batch: Any, foot_geom: int, variations: Variations) -> None:
+def vary_fields(batch: Any, calibration: Calibration, variations: Variations) -> None:
     """Change the friction and the springs of a batch of simulations, after ``prepare`` has set them.
 
     The springs are MuJoCo's ``solref`` with negative numbers, which are stiffness and damping times a constant.
     """
-    batch.expand("dof_damping")[:, -2:] *= variations.damping[:, None]
-    batch.expand("dof_frictionloss")[:, -2:] *= variations.friction[:, None]
-    batch.expand("dof_frictionloss")[:, -3] *= variations.rail_friction
-    foot, stops = batch.expand("geom_solref")[:, foot_geom, 0], batch.expand("jnt_solref")[:, -2:, 0]
-    foot *= np.where(foot < 0.0, variations.foot_stiffness, 1.0)
-    stops *= np.where(stops < 0.0, variations.stop_stiffness[:, None], 1.0)
+    motors, slide_z = motor_places(calibration), coordinates(calibration).index("slide_z")
+    batch.expand("dof_damping")[:, motors] *= variations.damping[:, None]
+    batch.expand("dof_frictionloss")[:, motors] *= variations.friction[:, None]
+    batch.expand("dof_frictionloss")[:, slide_z] *= variations.rail_friction
+    springs = [(batch.expand("geom_solref")[:, FOOT_GEOM], variations.foot_stiffness)]
+    limits = batch.expand("jnt_solref")
+    springs += [(limits[:, place], variations.stop_stiffness) for place in joint_places(calibration)]
+    for solref, factors in springs:
+        solref[:, 0] *= np.where(solref[:, 0] < 0.0, factors, 1.0)
 
 
 T = TypeVar("T", bound="DataclassInstance")

@@ -47,6 +47,26 @@ def reach_mm(d: LegDimensions) -> float:
     return _STRAIGHT * d.chain.pitch_mm
 
 
+_RENOLD_MM_PER_N = 14.51e-5
+"""Elastic extension of a simplex roller chain times its pitch squared, per length and pull: Renold, Transmission Chain,
+designer guide, "chain extension"; all in mm and N. Quoted from memory."""
+
+
+def strand_compliance_m_per_n(length_mm: Numbers, d: LegDimensions) -> Numbers:
+    """Return by how much one strand stretches per pull, float or shape (n,), between axes ``length_mm`` apart.
+
+    In series: the chain between the sprockets and the last pins, both studs, and the bar, as long as its parts are;
+    forks and the teeth of the sprockets are taken as rigid.
+    """
+    half_bar = 0.5 * (length_mm - 2.0 * reach_mm(d)) - FORK_ROOT - TRAVEL - _NUT - _SPARE
+    chain = _RENOLD_MM_PER_N / d.chain.pitch_mm**2 * 2.0 * reach_mm(d)
+    steel, aluminium = MATERIALS.steel.youngs_modulus_mpa, MATERIALS.aluminium.youngs_modulus_mpa
+    studs = 2.0 * (TRAVEL + _NUT + _SPARE + _STUD_DEPTH - LEAST_ENGAGED) / (steel * _STUD**2)
+    ends = 2.0 * _TAPPED / (aluminium * (BAR_WIDTH**2 - _STUD**2))
+    middle = 2.0 * (half_bar - _TAPPED) / (aluminium * BAR_WIDTH * BAR_FLAT)
+    return 1e-3 * (chain + studs + ends + middle)
+
+
 def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     """Build both pieces of the chain and the turnbuckles between axes ``length_mm`` apart, float or shape (n,).
 

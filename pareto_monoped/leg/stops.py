@@ -43,8 +43,12 @@ class Bumper:
         straight bar.
         """
         share = np.maximum(compression_mm, 0.0) / self.diameter_mm
-        area = self.diameter_mm * self.length_mm
-        return self.elastomer.youngs_modulus_mpa * area * (1.25 * share**1.5 + 50.0 * share**6)
+        return self.scale_n * (1.25 * share**1.5 + 50.0 * share**6)
+
+    @property
+    def scale_n(self) -> float:
+        """E d l of ``force_n``."""
+        return self.elastomer.youngs_modulus_mpa * (self.diameter_mm * self.length_mm)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,6 +15,7 @@ from pareto_monoped.config import Strict
 from pareto_monoped.design import NAMES, complete
 from pareto_monoped.geometry.parts import MassProperties
 from pareto_monoped.geometry.shapes import Floats
+from pareto_monoped.leg.chain import strand_compliance_m_per_n
 from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
 from pareto_monoped.leg.stand import stand_mass_kg
 from pareto_monoped.leg.stops import JointStop, hip_stop, knee_stop
@@ -82,6 +83,9 @@ class RobotArrays:
     #: What the knee motor's rotor has beyond its share of the thigh's inertia, shape (n,)
     rotor_excess_kg_m2: Floats
     sprocket_radius_m: Floats  #: pitch radius of the chain's sprockets, shape (n,)
+    #: Between each motor's rotor and its joint, at the joint: gearbox with the sun's shaft, at the knee also the strand
+    #: of the chain that pulls; shape (n, 2)
+    drive_stiffness_n_m_per_rad: Floats
     peak_torque_n_m: Floats  #: at the joint, before losses, shape (n, 2)
     continuous_torque_n_m: Floats  #: likewise
     no_load_speed_rad_per_s: Floats  #: at the joint, shape (n, 2)
@@ -163,7 +167,7 @@ def robot_arrays(designs: ArrayLike, maps: Maps, options: MassOptions = PARTS_ON
 def _turning(
     of_actuators: Callable[[str], Floats], leg: LegDimensions, thigh_m: Floats, options: MassOptions
 ) -> dict[str, Floats]:
-    """Return what turns in each robot: the fields of ``RobotArrays`` from ``armature_kg_m2`` to ``sprocket_radius_m``.
+    """Return what turns in each robot: fields of ``RobotArrays`` up to ``drive_stiffness_n_m_per_rad``.
 
     ``of_actuators``: name of a column of ``ActuatorTable`` -> its values for the actuators of all joints, shape (n, 2);
     ``options``: may set the rotors' inertia, which then stands for everything that turns in an actuator.
@@ -175,7 +179,9 @@ def _turning(
         armature = options.rotor_inertia_kg_m2 * np.square(ratio)
         rotor = np.full(ratio.shape, options.rotor_inertia_kg_m2)
         coupling, excess = rotor[:, knee] * ratio[:, knee], np.zeros(len(ratio))
-    drive = drive_turning(leg)
+    drive, radius_m = drive_turning(leg), 1e-3 * leg.chain.pitch_radius_mm
+    compliance = of_actuators("compliance_rad_per_n_m")
+    compliance[:, knee] += strand_compliance_m_per_n(1e3 * thigh_m, leg) / radius_m**2
 
     return {
         "armature_kg_m2": armature,
@@ -183,7 +189,8 @@ def _turning(
         "knee_reflected_kg_m2": armature[:, knee] + drive.reflected_kg_m2[0] + drive.reflected_kg_m2[1] * thigh_m,
         "knee_coupling_kg_m2": coupling + drive.coupling_kg_m2[0] + drive.coupling_kg_m2[1] * thigh_m,
         "rotor_excess_kg_m2": excess,
-        "sprocket_radius_m": np.full(len(ratio), 1e-3 * leg.chain.pitch_radius_mm),
+        "sprocket_radius_m": np.full(len(ratio), radius_m),
+        "drive_stiffness_n_m_per_rad": 1.0 / compliance,
     }
 
 

@@ -204,6 +204,7 @@ class ActuatorTable:
     no_load_speed_rad_per_s: Floats
     efficiency: Floats
     efficiency_total: Floats  #: of the whole gearbox, see ``Losses``
+    compliance_rad_per_n_m: Floats  #: of everything between rotor and output, see ``Stiffness``
 
 
 _OF_ACTUATORS = ("peak_torque_n_m", "continuous_torque_n_m", "no_load_speed_rad_per_s", "efficiency")
@@ -213,6 +214,7 @@ _OF_ACTUATORS = ("peak_torque_n_m", "continuous_torque_n_m", "no_load_speed_rad_
 def actuator_table(actuator_map: ActuatorMap) -> ActuatorTable:
     """Return the actuators of a map in numbers. The result is kept, as a map is asked for many times."""
     actuators = _actuators(actuator_map)
+    sheets = [service_sheet(a, actuator_map.settings) for a in actuators]
     row = np.cumsum([entry.actuator is not None for entry in actuator_map.entries]) - 1
     return ActuatorTable(
         row=np.maximum(row, 0),
@@ -222,7 +224,8 @@ def actuator_table(actuator_map: ActuatorMap) -> ActuatorTable:
         rotor_inertia_kg_m2=np.array([rotor_inertia_kg_m2(a) for a in actuators]),
         rotor_excess_kg_m2=np.array([rotor_excess_kg_m2(a) for a in actuators]),
         **{name: np.array([getattr(a, name) for a in actuators]) for name in _OF_ACTUATORS},
-        efficiency_total=np.array([service_sheet(a, actuator_map.settings).losses.efficiency_total for a in actuators]),
+        efficiency_total=np.array([sheet.losses.efficiency_total for sheet in sheets]),
+        compliance_rad_per_n_m=np.array([1.0 / sheet.stiffness.stiffness_n_m_per_rad for sheet in sheets]),
     )
 
 

@@ -25,11 +25,13 @@ def audit_front(db: StudyPlace, store: Store, simulator: Simulator, notify: Call
     """Audit every design on the front that has no audit yet, and store the audits.
 
     A design that fails its audit leaves the front, and designs that it dominated may enter, so the audit repeats until
-    every design on the front has passed. For most designs one coarse jump shows that they pass (``jump.screen``). The
-    others have a brief audit: ``simulate --audit`` makes the full one.
+    every design on the front has passed. MuJoCo makes every jump again, whatever engine the study has
+    (``audit.judge``). For most designs one coarse jump shows that they pass the rest (``jump.screen``). The others have
+    a brief audit: ``simulate --audit`` makes the full one.
     """
-    from pareto_monoped.jump.audit import ONLY_IN_FULL, audit
+    from pareto_monoped.jump.audit import ONLY_IN_FULL, audit, judge
     from pareto_monoped.jump.screen import screened
+    from pareto_monoped.jump.variations import take
 
     calibration, workers, executor = simulator.calibration, simulator.evaluator.workers, simulator.evaluator.executor
     while True:
@@ -40,16 +42,25 @@ def audit_front(db: StudyPlace, store: Store, simulator: Simulator, notify: Call
             return
         notify(f"auditing {len(fresh)} designs of the front")
         for kit, rows in _chunks(data, fresh):
-            found = screened(_designs(rows), kit, calibration, _known(rows), workers=workers, executor=executor)
-            clear = found.clear
-            columns = {name: values[clear] for name, values in found.as_columns().items()}
+            known, designs = _known(rows), _designs(rows)
+            found = screened(designs, kit, calibration, known, workers=workers, executor=executor)
+            judged = judge(designs, kit, calibration, known, workers=workers, executor=executor)
+            clear = found.clear & judged.clear(known)
+            columns = {k: values[clear] for k, values in (found.as_columns() | judged.as_columns()).items()}
             _store(store, rows[clear], np.ones(clear.sum(), dtype=bool), columns | {"reason": np.full(clear.sum(), "")})
-            unclear = rows[~clear]
+            unclear = np.flatnonzero(~clear)
             for first in range(0, len(unclear), _AUDITED):
-                part = unclear.iloc[first : first + _AUDITED]
-                known, designs = _known(part), _designs(part)
+                places = unclear[first : first + _AUDITED]
+                part = rows.iloc[places]
                 audits = audit(
-                    designs, kit, calibration, workers=workers, executor=executor, known=known, brief=True
+                    designs[places],
+                    kit,
+                    calibration,
+                    workers=workers,
+                    executor=executor,
+                    known=take(known, places),
+                    judged=take(judged, places),
+                    brief=True,
                 ).as_columns()
                 good = audits.pop("well_conditioned")
                 _store(store, part, good, {name: audits[name] for name in audits if name not in ONLY_IN_FULL})

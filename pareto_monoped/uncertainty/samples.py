@@ -18,7 +18,7 @@ from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.jump.variations import Variations
 from pareto_monoped.measures import is_robust
 from pareto_monoped.robot.units import BODIES, JOINTS
-from pareto_monoped.uncertainty.settings import DEFAULT_SEED, STAND_RANGES, Sampling, Uncertainty
+from pareto_monoped.uncertainty.settings import DEFAULT_SEED, LATER_RANGES, STAND_RANGES, Sampling, Uncertainty
 from pareto_monoped.uncertainty.statistics import overloads, spread
 
 Floats = NDArray[np.float64]
@@ -33,6 +33,11 @@ Name = Literal[
     "gains",
     "delay_s",
     "battery_voltage",
+    "gear_loss",
+    "chain_loss",
+    "winding_resistance",
+    "rotor_inertia",
+    "rebound",
     "stand_mass",
     "rail_friction",
 ]
@@ -48,6 +53,7 @@ DIMENSIONS: tuple[tuple[Name, int], ...] = (
     ("gains", 3),
     ("delay_s", 1),
     ("battery_voltage", 1),
+    *((name, 1) for name in LATER_RANGES),
 )
 """Ranges and how many independent numbers each has, in the order of the points' coordinates."""
 STAND_DIMENSIONS: tuple[tuple[Name, int], ...] = tuple((name, 1) for name in STAND_RANGES)
@@ -125,7 +131,7 @@ def variations(samples: Samples, designs: int, calibration: Calibration) -> Vari
         link_lengths_m=np.tile(samples.values["link_length_m"], (designs, 1)),
         gains=factors("gains"),
         delays_s=np.tile(samples.values["delay_s"], (designs, 1))[:, 0],
-        **{name: factor(name) if name in samples.values else np.ones(total) for name, _ in STAND_DIMENSIONS},
+        **{name: factor(name) if name in samples.values else np.ones(total) for name in (*LATER_RANGES, *STAND_RANGES)},
     )
 
 

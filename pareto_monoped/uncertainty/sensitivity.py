@@ -139,11 +139,19 @@ _LABELS: dict[Name, tuple[str, ...]] = {
     "gains": ("gain K", "gain C", "gain T"),
     "delay_s": ("delay",),
     "battery_voltage": ("battery voltage",),
+    "gear_loss": ("loss in gears",),
+    "chain_loss": ("loss in the chain",),
+    "winding_resistance": ("winding resistance",),
+    "rotor_inertia": ("rotor inertia",),
+    "rebound": ("stop rebound",),
     "stand_mass": ("mass of the stand",),
     "rail_friction": ("rail friction",),
 }
 _MADE: frozenset[Name] = frozenset(
-    ("masses", "friction", "damping", "stop_stiffness", "foot_stiffness", "link_length_m", "stand_mass")
+    (
+        *("masses", "friction", "damping", "stop_stiffness", "foot_stiffness", "link_length_m", "stand_mass"),
+        *("gear_loss", "chain_loss", "rebound"),
+    )
 )
 """Ranges that come from making parts: printing, moulding, machining, greasing. The others are of motors and electronics
 that are bought, and of use."""

@@ -14,8 +14,14 @@ SHIPPED, WHAT = "uncertainty.toml", "uncertainty file"
 """The shipped file, and what such a file is called in messages."""
 STAND_RANGES: tuple[Literal["stand_mass", "rail_friction"], ...] = ("stand_mass", "rail_friction")
 """Which only a calibration with a stand has."""
+LATER_RANGES: tuple[Literal["gear_loss", "chain_loss", "winding_resistance", "rotor_inertia", "rebound"], ...] = (
+    *("gear_loss", "chain_loss", "winding_resistance", "rotor_inertia", "rebound"),
+)
+"""Which earlier studies lack; they vary none of these."""
 _LEAST_SHARE, _MOST_LENGTH_M = -0.9, 0.01
 """Beyond these nothing is left of a part, or its mass no longer fits its length. Our own choice."""
+_MOST_LOSS, _MOST_REBOUND = 9.0, 9.0
+"""Ten times a loss of 3 percent leaves little to jump with, and ten times the rebound is that of natural rubber."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,6 +54,12 @@ class Uncertainty(Strict):
     gains: Range
     delay_s: Range
     battery_voltage: Range
+    #: gear_loss, chain_loss, winding_resistance, rotor_inertia, rebound: None in a study stored before there were any
+    gear_loss: Range | None = None
+    chain_loss: Range | None = None
+    winding_resistance: Range | None = None
+    rotor_inertia: Range | None = None
+    rebound: Range | None = None
     #: stand_mass, rail_friction: None where they are as shipped, and where there is no stand
     stand_mass: Range | None = None
     rail_friction: Range | None = None
@@ -56,7 +68,11 @@ class Uncertainty(Strict):
         """Refuse what no robot can have."""
         for name, range_ in self.ranges.items():
             least, most = _LEAST_SHARE, float("inf")
-            if name == "link_length_m":
+            if name in ("gear_loss", "chain_loss"):
+                least, most = -1.0, _MOST_LOSS
+            elif name == "rebound":
+                most = _MOST_REBOUND
+            elif name == "link_length_m":
                 least, most = -_MOST_LENGTH_M, _MOST_LENGTH_M
             elif name == "delay_s":
                 least = 0.0
@@ -80,7 +96,8 @@ class Uncertainty(Strict):
         """Return the ranges of a calibration with or without a stand, as shipped where these name none for it."""
         if not stand:
             return replace(self, stand_mass=None, rail_friction=None)
-        return uncertainty_of(_shipped(stand=True) | self.as_dict(), source=WHAT)
+        shipped = _shipped(stand=True)
+        return uncertainty_of({name: shipped[name] for name in STAND_RANGES} | self.as_dict(), source=WHAT)
 
 
 def uncertainty_of(values: Mapping[str, Any], *, source: str, error: type[InputError] = InputError) -> Uncertainty:

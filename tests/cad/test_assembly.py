@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.cad.assembly import Pose, body_frames, instances, turn_y
-from pareto_monoped.jump.model import mjcf
+from pareto_monoped.jump.document import mjcf
 from pareto_monoped.robot.population import robot_arrays
 
 

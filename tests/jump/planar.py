@@ -2,8 +2,8 @@
 
 Rigid bodies in the plane, integrated by Runge and Kutta's method of fourth order.
 
-Coordinates are x and z of the base, hip and knee; SI units. ``tests/jump/test_independent_simulator.py`` holds the
-package's simulation against it.
+Coordinates are x and z of the base, hip and knee, and with elastic drives the motors of both as angles of their joints;
+SI units. ``tests/jump/test_independent_simulator.py`` holds the package's simulation against it.
 """
 
 from collections import namedtuple
@@ -21,7 +21,9 @@ CREEP = 1e-3
 Machine = namedtuple(
     "Machine",
     "thigh shank radius mass centres inertia reflected coupling lower upper stop peak no_load corner loss heat gains"
-    " rest release damping friction loss_speed foot mu slip fade inverse start delay guided stand rails",
+    " rest release damping friction loss_speed foot mu slip fade inverse start delay guided stand rails"
+    " spring damper play bumper bus rotor ratio sprocket",
+    defaults=(np.zeros(2), np.zeros(2), 0.0, np.zeros((2, 3)), False, np.zeros(2), 1.0, 1.0),
 )
 """One robot with its drives, stops, contact and controller.
 
@@ -29,8 +31,15 @@ mass (3,): of base, thigh and shank. centres: x and z of those of thigh and shan
 reflected (2,): C of hip and knee. coupling: B of the knee. lower, upper, peak, no_load, corner, loss, heat (2,): of hip
 and knee. stop: K, C, w and D of hip and knee. foot: K, C, w and D. gains: K, C and T. inverse (3,): A of hip, knee and
 foot, filled in by ``with_inverse_masses``. delay: in control periods. guided: whether the base moves in z only. stand,
-rails: what it lifts besides the robot in kg, and the Coulomb friction of its rails in N.
+rails: what it lifts besides the robot in kg, and the Coulomb friction of its rails in N. damping, friction (2,).
+
+spring, damper (2,): of elastic drives; 0 means rigid ones. play: of both, in rad. bumper (2, 3): E d l on its lever,
+compression over diameter per angle and chi per joint speed; 0 leaves the stops to ``stop``. bus: whether one motor
+takes what the other gives. rotor (2,): inertia at the motor times the ratio squared. ratio: of the knee. sprocket:
+radius.
 """
+LOADS = "hip gear, knee gear, chain, stop, foot"
+"""Peaks that ``jump`` returns besides, in N m, and in N for chain and foot."""
 
 
 @numba.njit(cache=True)
@@ -53,15 +62,18 @@ def bodies(q, m):
     first, second = turned(q[2], *m.centres[0]), turned(q[2] + q[3], *m.centres[1])
     none = np.zeros(2)
     thigh, shank = jacobian(first, none), jacobian(knee, second)
-    matrix = m.mass[1] * thigh.T @ thigh + m.mass[2] * shank.T @ shank
-    matrix[0, 0] += m.mass[0]
-    matrix[1, 1] += m.mass[0]
-    matrix[0, 0] += m.stand
-    matrix[1, 1] += m.stand
-    matrix[2, 2] += m.inertia[0] + m.inertia[1] + m.reflected[0]
-    matrix[2, 3] += m.inertia[1] + m.coupling
-    matrix[3, 2] += m.inertia[1] + m.coupling
-    matrix[3, 3] += m.inertia[1] + m.reflected[1]
+    matrix, n = np.zeros((len(q), len(q))), len(q)
+    matrix[:4, :4] = m.mass[1] * thigh.T @ thigh + m.mass[2] * shank.T @ shank
+    matrix[0, 0] += m.mass[0] + m.stand
+    matrix[1, 1] += m.mass[0] + m.stand
+    matrix[2, 2] += m.inertia[0] + m.inertia[1]
+    matrix[2, 3] += m.inertia[1]
+    matrix[3, 2] += m.inertia[1]
+    matrix[3, 3] += m.inertia[1]
+    matrix[n - 2, n - 2] += m.reflected[0]
+    matrix[n - 1, n - 1] += m.reflected[1]
+    matrix[2, n - 1] += m.coupling
+    matrix[n - 1, 2] += m.coupling
     return matrix, thigh, shank, first, knee, second
 
 
@@ -93,8 +105,16 @@ def solved(left, right):
 
 
 @numba.njit(cache=True)
-def acceleration(q, v, motor, m, mode):
-    """Of the coordinates.
+def spring_torque(j, q, v, m):
+    """On joint ``j``, from its motor."""
+    wound, play = q[4 + j] - q[2 + j], 0.5 * m.play
+    taut = np.sign(wound) * max(abs(wound) - play, 0.0)
+    return m.spring[j] * taut + m.damper[j] * (v[4 + j] - v[2 + j])
+
+
+@numba.njit(cache=True)
+def acceleration(q, v, motor, m, mode, loads):
+    """Of the coordinates; the present ``LOADS`` but those of gears are written.
 
     Every force is linear in the accelerations as long as the contact sticks or slides in one direction, friction is
     below its limit or at one end of it, and a stop pushes or not. ``mode`` holds that of the last call: floor (0 off, 1
@@ -102,30 +122,42 @@ def acceleration(q, v, motor, m, mode):
     all are tried; the solution is unique.
     """
     matrix, thigh, shank, first, knee, second = bodies(q, m)
-    w1, w2 = v[2] ** 2, (v[2] + v[3]) ** 2
-    down = np.array([0.0, GRAVITY])
-    force = -m.mass[1] * thigh.T @ (down - first * w1) - m.mass[2] * shank.T @ (down - knee * w1 - second * w2)
+    w1, w2, n = v[2] ** 2, (v[2] + v[3]) ** 2, len(q)
+    down, force = np.array([0.0, GRAVITY]), np.zeros(n)
+    force[:4] = -m.mass[1] * thigh.T @ (down - first * w1) - m.mass[2] * shank.T @ (down - knee * w1 - second * w2)
     force[1] -= (m.mass[0] + m.stand) * GRAVITY + m.rails * np.tanh(v[1] / CREEP)
     beyond, side, virtual, push = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
     for j in range(2):
-        torque = motor[j] - m.loss[j] * abs(motor[j]) * np.tanh(v[2 + j] / m.loss_speed)
-        force[2 + j] += min(max(torque, -m.peak[j]), m.peak[j]) - m.damping * v[2 + j]
+        i = n - 2 + j
+        torque = motor[j] - m.loss[j] * abs(motor[j]) * np.tanh(v[i] / m.loss_speed)
+        force[i] += min(max(torque, -m.peak[j]), m.peak[j]) - m.damping[j] * v[i]
+        if n == 6:
+            pull = spring_torque(j, q, v, m)
+            force[2 + j] += pull
+            force[4 + j] -= pull
+            loads[2] = abs(pull) / m.sprocket
         beyond[j] = max(m.lower[j] - q[2 + j], q[2 + j] - m.upper[j])
         side[j] = 1.0 if q[2 + j] < m.lower[j] else -1.0
-        if beyond[j] > 0:
+        if beyond[j] > 0 and m.bumper[j, 0] > 0:
+            c = beyond[j] * m.bumper[j, 1]
+            law_n_m = m.bumper[j, 0] * (1.25 * c**1.5 + 50 * c**6) * (1 - m.bumper[j, 2] * side[j] * v[2 + j])
+            force[2 + j] += side[j] * max(law_n_m, 0.0)
+            loads[3] = max(law_n_m, 0.0)
+        elif beyond[j] > 0:
             virtual[j], k, b = law(beyond[j], m.stop[j], m.inverse[j])
             push[j] = k * beyond[j] - b * side[j] * v[2 + j]
     foot = turned(q[2] + q[3], 0.0, -m.shank)
     depth = m.radius - (q[1] + knee[1] + foot[1])
+    along, up = np.zeros(n), np.zeros(n)
     point = jacobian(knee, foot + np.array([0.0, 0.5 * depth - m.radius]))
-    along, up = point[0], point[1]
+    along[:4], up[:4] = point[0], point[1]
     stick = pull_n = pull_t = 0.0
     if depth > 0:
         stick, k, b = law(depth, m.foot, m.inverse[2])
         pull_n, pull_t = k * depth - b * (up @ v), -b * (along @ v)
     slide = stick / (1 + m.mu**2 / m.slip)
 
-    a, found = np.zeros(4), np.zeros(5, np.int64)
+    a, found = np.zeros(n), np.zeros(5, np.int64)
     for attempt in range(154):
         if attempt >= 10:
             c = attempt - 10
@@ -140,29 +172,34 @@ def acceleration(q, v, motor, m, mode):
             left += slide * np.outer(both, both)
             right += slide * (pull_n + signed * pull_t) * both
         for j in range(2):
-            i, creep = 2 + j, 9 / m.inverse[j]
+            i, creep = n - 2 + j, 9 / m.inverse[j]
             if mode[1 + j] == 0:
                 left[i, i] += creep
                 right[i] -= creep * v[i] / 9.5e-3
-            right[i] += mode[1 + j] * m.friction
+            right[i] += mode[1 + j] * m.friction[j]
             if mode[3 + j] == 1:
-                left[i, i] += virtual[j]
-                right[i] += virtual[j] * push[j] * side[j]
+                left[2 + j, 2 + j] += virtual[j]
+                right[2 + j] += virtual[j] * push[j] * side[j]
         if m.guided:
             left[0, :] = left[:, 0] = right[0] = 0.0
             left[0, 0] = 1.0
         a = solved(left, right)
-        n, t = pull_n - up @ a, pull_t - along @ a
+        n_pull, t = pull_n - up @ a, pull_t - along @ a
         found[0] = 0
-        if depth > 0 and m.slip * abs(t) <= m.mu * n:
+        if depth > 0 and m.slip * abs(t) <= m.mu * n_pull:
             found[0] = 1
-        elif depth > 0 and n + m.mu * abs(t) > 0:
+        elif depth > 0 and n_pull + m.mu * abs(t) > 0:
             found[0] = 2 if t > 0 else 3
         for j in range(2):
-            wanted = 9 / m.inverse[j] * (-a[2 + j] - v[2 + j] / 9.5e-3)
-            found[1 + j] = int(wanted > m.friction) - int(wanted < -m.friction)
-            found[3 + j] = int(beyond[j] > 0 and push[j] - side[j] * a[2 + j] > 0)
+            i = n - 2 + j
+            wanted = 9 / m.inverse[j] * (-a[i] - v[i] / 9.5e-3)
+            found[1 + j] = int(wanted > m.friction[j]) - int(wanted < -m.friction[j])
+            found[3 + j] = int(virtual[j] > 0 and push[j] - side[j] * a[2 + j] > 0)
         if np.all(found == mode):
+            if mode[0] == 1:
+                loads[4] = stick * np.hypot(n_pull, m.slip * t)
+            elif mode[0] > 1:
+                loads[4] = slide * (n_pull + m.mu * abs(t)) * np.hypot(1.0, m.mu)
             return a
         mode[:] = found
     raise ValueError("no consistent set of forces")
@@ -170,12 +207,12 @@ def acceleration(q, v, motor, m, mode):
 
 @numba.njit(cache=True)
 def wanted(q, v, m):
-    """The torques of section II-B."""
-    knee, foot = turned(q[2], 0.0, -m.thigh), turned(q[2] + q[3], 0.0, -m.shank)
+    """The torques of section II-B, from angles and speeds of both motors."""
+    knee, foot = turned(q[0], 0.0, -m.thigh), turned(q[0] + q[1], 0.0, -m.shank)
     r, turn = knee + foot, jacobian(knee, foot)[:, 2:].copy()
     length = np.hypot(r[0], r[1])
     sine, cosine = -r[0] / length, -r[1] / length
-    axial = m.gains[0] * (m.rest - length) - m.gains[1] * (r @ (turn @ v[2:])) / length
+    axial = m.gains[0] * (m.rest - length) - m.gains[1] * (r @ (turn @ v)) / length
     twist = -m.gains[2] * np.arctan2(sine, cosine) / length
     weight = m.mass.sum() * GRAVITY
     return turn.T @ np.array([-axial * sine - twist * cosine, -axial * cosine + twist * sine - weight])
@@ -186,53 +223,64 @@ def limited(torque, v, m):
     """Within the motors' peak torque, and within their voltage where they drive."""
     most = m.peak.copy()
     for j in range(2):
-        if torque[j] * v[2 + j] > 0:
-            most[j] *= min(max((m.no_load[j] - abs(v[2 + j])) / (m.no_load[j] - m.corner[j]), 0.0), 1.0)
+        if torque[j] * v[j] > 0:
+            most[j] *= min(max((m.no_load[j] - abs(v[j])) / (m.no_load[j] - m.corner[j]), 0.0), 1.0)
     return np.minimum(np.maximum(torque, -most), most)
 
 
 @numba.njit(cache=True)
 def jump(m, q):
-    """Height in m, mechanical energy and energy at the battery in J."""
-    q, v, mode = q.copy(), np.zeros(4), np.zeros(5, np.int64)
+    """Height in m, mechanical energy and energy at the battery in J; then the peaks of ``LOADS``."""
+    q, v, mode, n = q.copy(), np.zeros(len(q)), np.zeros(5, np.int64), len(q)
     stood = off = False
     height, energy, battery, h = q[1], 0.0, 0.0, 1e-3 / SUBSTEPS
-    torques, shares = np.zeros((3000, 2)), np.zeros((3000, 2))
+    torques, shares, peaks = np.zeros((3000, 2)), np.zeros((3000, 2)), np.zeros(5)
     for period in range(3000):
         clearance = q[1] - m.thigh * np.cos(q[2]) - m.shank * np.cos(q[2] + q[3]) - m.radius
         stood |= clearance <= 0
-        off |= stood and clearance >= m.fade
+        # What the controller knows of the leg it reads from the motors.
+        hip, knee = q[n - 2], q[n - 1]
+        read = q[1] - m.thigh * np.cos(hip) - m.shank * np.cos(hip + knee) - m.radius
+        off |= stood and read >= m.fade
         if off and v[1] <= 0:
-            return height, energy, battery
-        u = min(max(clearance / m.fade, 0.0), 1.0)
-        torques[period], shares[period] = wanted(q, v, m), 0.0 if off else 1 - 3 * u**2 + 2 * u**3
+            return height, energy, battery, peaks
+        u = min(max(read / m.fade, 0.0), 1.0)
+        torques[period] = wanted(q[n - 2 :], v[n - 2 :], m)
+        shares[period] = 0.0 if off else 1 - 3 * u**2 + 2 * u**3
         if m.release > 0:
-            shares[period, 1] *= min(max((q[3] - m.lower[1]) / m.release, 0.0), 1.0)
+            shares[period, 1] *= min(max((knee - m.lower[1]) / m.release, 0.0), 1.0)
         due = period - m.delay
-        motor = shares[due] * limited(torques[due], v, m) if due >= 0 else np.zeros(2)
+        motor = shares[due] * limited(torques[due], v[n - 2 :], m) if due >= 0 else np.zeros(2)
         for _ in range(SUBSTEPS):
-            a1 = acceleration(q, v, motor, m, mode)
+            loads = np.zeros(5)
+            a1 = acceleration(q, v, motor, m, mode, loads)
+            loads[0] = abs(motor[0] - m.rotor[0] * a1[n - 2])
+            loads[1] = abs(motor[1] - m.rotor[1] * a1[n - 1] - m.rotor[1] / m.ratio * a1[2])
+            peaks = np.maximum(peaks, loads)
             v2 = v + 0.5 * h * a1
-            a2 = acceleration(q + 0.5 * h * v, v2, motor, m, mode)
+            a2 = acceleration(q + 0.5 * h * v, v2, motor, m, mode, loads)
             v3 = v + 0.5 * h * a2
-            a3 = acceleration(q + 0.5 * h * v2, v3, motor, m, mode)
+            a3 = acceleration(q + 0.5 * h * v2, v3, motor, m, mode, loads)
             v4 = v + h * a3
-            a4 = acceleration(q + h * v3, v4, motor, m, mode)
+            a4 = acceleration(q + h * v3, v4, motor, m, mode, loads)
             before = v
             q, v = q + h * (v + 2 * v2 + 2 * v3 + v4) / 6, v + h * (a1 + 2 * a2 + 2 * a3 + a4) / 6
-            power = motor * (before + v)[2:] / 2
+            power = motor * (before + v)[n - 2 :] / 2
             energy += np.maximum(power, 0.0).sum() * h
-            battery += np.maximum(power + m.heat * motor**2, 0.0).sum() * h
+            drawn = power + m.heat * motor**2
+            battery += max(drawn.sum(), 0.0) * h if m.bus else np.maximum(drawn, 0.0).sum() * h
             height = max(height, q[1])
-    return np.nan, np.nan, np.nan
+    return np.nan, np.nan, np.nan, peaks
 
 
 def with_inverse_masses(m):
-    """With A of hip, knee and foot."""
-    matrix, _, shank, *_ = bodies(np.zeros(4), m)
-    inverse, free = np.zeros((4, 4)), slice(int(m.guided), 4)
+    """With A of hip, knee and foot; with elastic drives, of the motors and the foot."""
+    n = 6 if m.spring.any() else 4
+    matrix, _, shank, *_ = bodies(np.zeros(n), m)
+    inverse, free = np.zeros((n, n)), slice(int(m.guided), n)
     inverse[free, free] = np.linalg.inv(matrix[free, free])
-    return m._replace(inverse=np.array([inverse[2, 2], inverse[3, 3], np.trace(shank @ inverse @ shank.T) / 3]))
+    foot = np.trace(shank @ inverse[:4, :4] @ shank.T) / 3
+    return m._replace(inverse=np.array([inverse[n - 2, n - 2], inverse[n - 1, n - 1], foot]))
 
 
 def standing(m):
@@ -245,4 +293,4 @@ def standing(m):
     reach = m.start - m.radius + depth
     knee = np.arccos((reach**2 - m.thigh**2 - m.shank**2) / (2 * m.thigh * m.shank))
     hip = -np.arctan2(m.shank * np.sin(knee), m.thigh + m.shank * np.cos(knee))
-    return np.array([0.0, m.start, hip, knee])
+    return np.array([0.0, m.start, hip, knee] + ([hip, knee] if m.spring.any() else []))

@@ -67,6 +67,7 @@ def plausible_robots(designs):
         knee_coupling_kg_m2=1.0e-4 * ratio[:, 1],
         rotor_excess_kg_m2=np.zeros(n),
         sprocket_radius_m=np.full(n, 0.026),
+        drive_stiffness_n_m_per_rad=np.tile([20000.0, 2000.0], (n, 1)),
         peak_torque_n_m=5.5 * ratio,
         continuous_torque_n_m=3.82 * ratio,
         no_load_speed_rad_per_s=502.65 / ratio,

@@ -15,8 +15,8 @@ from pareto_monoped.jump.calibration import (
 from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 
 
-def test_four_ship_and_the_default_is_the_well_posed_one():
-    assert calibration_names() == ("reference", "ideal", "paper", "stand")
+def test_five_ship_and_the_default_is_the_well_posed_one():
+    assert calibration_names() == ("reference", "elastic", "ideal", "paper", "stand")
     assert load_calibration().name == "reference"
     assert isinstance(load_calibration().gate, FadeGate)
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.errors import SimulationError
-from pareto_monoped.jump import callback
+from pareto_monoped.jump import callback, controller_record, planar, single
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.callback import controlled
 from pareto_monoped.jump.evaluate import evaluate_robots
@@ -92,15 +92,21 @@ def test_calibrations_on_several_threads_do_not_meet():
                 np.testing.assert_array_equal(values, alone[name][column], err_msg=f"{name} {column}")
 
 
-def test_a_callback_on_disk_is_told_from_one_of_another_controller(tmp_path):
+def test_a_callback_on_disk_is_told_from_one_of_another_controller(tmp_path, monkeypatch):
     """The cache on disk depends on the callback's file and closure, not on the controller that the callback calls."""
-    origins = []
-    for text in ("axial = 1.0", "axial = 2.0", "axial = 2.0"):
-        path = tmp_path / "controller.py"
-        path.write_text(text)
-        origins.append(callback._origin(path))
-    assert origins[0] != origins[1] == origins[2]
-    assert [cell.cell_contents for cell in callback._controller(origins[0]).__closure__] == [origins[0]]
+    for name in ("controller.py", "virtual_leg.py", "planar.py"):
+        (tmp_path / name).write_text("axial = 1.0")
+    monkeypatch.setattr(controller_record, "__file__", str(tmp_path / "controller_record.py"))
+    origins = [controller_record.origin()]
+    for name in ("controller.py", "virtual_leg.py", "planar.py"):
+        (tmp_path / name).write_text("axial = 2.0")
+        origins += [controller_record.origin(), controller_record.origin()]
+    assert origins[1::2] == origins[2::2]
+    assert len(set(origins)) == 4
+    for make in (callback._controller, planar._stepper, single._controller):
+        assert origins[0] in [
+            cell.cell_contents for cell in getattr(make(origins[0]), "py_func", make(origins[0])).__closure__
+        ]
 
 
 def test_jumps_that_the_controller_is_kept_from_end_in_an_error_and_not_never(monkeypatch):

@@ -7,7 +7,7 @@ import pytest
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import CONTROL, LOWER, UPPER, columns, complete
-from pareto_monoped.jump.balance import balance_errors, energy_balance
+from pareto_monoped.jump.balance import balanced, energy_balance
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.robot.population import robot_arrays
@@ -32,7 +32,7 @@ def test_every_balance_is_that_of_the_jump_alone(name):
     calibration = load_calibration(name)
     designs = jumping(calibration)
     assert len(designs) >= 20
-    errors = balance_errors(robot_arrays(designs, MAP, calibration.mass), columns(designs, CONTROL), calibration)
+    errors = balanced(robot_arrays(designs, MAP, calibration.mass), columns(designs, CONTROL), calibration).error
     np.testing.assert_allclose(errors, one_by_one(designs, calibration), rtol=0.0, atol=1e-12)
 
 
@@ -42,7 +42,7 @@ def test_so_it_is_with_other_integrators(integrator, read):
     simulation = replace(calibration.simulation, integrator=integrator, positions_read=read)
     calibration = replace(calibration, simulation=simulation)
     designs = jumping(calibration)[:5]
-    errors = balance_errors(robot_arrays(designs, MAP, calibration.mass), columns(designs, CONTROL), calibration)
+    errors = balanced(robot_arrays(designs, MAP, calibration.mass), columns(designs, CONTROL), calibration).error
     np.testing.assert_allclose(errors, one_by_one(designs, calibration), rtol=0.0, atol=1e-12)
 
 
@@ -50,7 +50,7 @@ def test_a_balance_does_not_depend_on_the_other_jumps_nor_on_the_workers():
     calibration = load_calibration()
     designs = jumping(calibration)
     robots, control = robot_arrays(designs, MAP, calibration.mass), columns(designs, CONTROL)
-    errors = balance_errors(robots, control, calibration)
-    np.testing.assert_array_equal(errors, balance_errors(robots, control, calibration, workers=2))
+    errors = balanced(robots, control, calibration).error
+    np.testing.assert_array_equal(errors, balanced(robots, control, calibration, workers=2).error)
     last = robot_arrays(designs[-3:], MAP, calibration.mass)
-    np.testing.assert_array_equal(errors[-3:], balance_errors(last, control[-3:], calibration))
+    np.testing.assert_array_equal(errors[-3:], balanced(last, control[-3:], calibration).error)

@@ -10,8 +10,8 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import LOWER, UPPER
 from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.document import mjcf
 from pareto_monoped.jump.end_stops import end_stops
-from pareto_monoped.jump.model import mjcf
 from pareto_monoped.jump.single import constraint_forces
 from pareto_monoped.robot.population import robot_arrays
 

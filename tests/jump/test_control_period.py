@@ -19,8 +19,8 @@ from pareto_monoped.errors import CalibrationError
 from pareto_monoped.jump import controller
 from pareto_monoped.jump.calibration import calibration_of, load_calibration
 from pareto_monoped.jump.controller_record import RECORD
+from pareto_monoped.jump.document import mjcf
 from pareto_monoped.jump.evaluate import Evaluator
-from pareto_monoped.jump.model import mjcf
 from pareto_monoped.jump.single import simulate
 from pareto_monoped.robot.population import robot_arrays
 

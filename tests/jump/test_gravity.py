@@ -9,10 +9,11 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import CONTROL, PAPER_CASES, columns
 from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.document import mjcf
 from pareto_monoped.jump.end_stops import end_stops
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.gravity import least_energy_j, least_of_all_j, standing_height_m
-from pareto_monoped.jump.model import compression_m, mjcf, slow_force_n
+from pareto_monoped.jump.model import compression_m, slow_force_n
 from pareto_monoped.jump.single import moments, trace_of
 from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import robot_arrays

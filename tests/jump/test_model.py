@@ -6,8 +6,9 @@ import pytest
 
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.controller_record import RECORD_NUMBERS
+from pareto_monoped.jump.document import mjcf
 from pareto_monoped.jump.end_stops import end_stops
-from pareto_monoped.jump.model import mjcf, start_pose
+from pareto_monoped.jump.model import start_pose
 from pareto_monoped.jump.population import prepare
 from tests.jump.robots import plausible_robots, random_designs
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.document import mjcf
 from pareto_monoped.jump.evaluate import evaluate_robots
-from pareto_monoped.jump.model import mjcf
 from pareto_monoped.jump.population import first_records
 from pareto_monoped.jump.variations import take
 from tests.jump import oracle

@@ -16,8 +16,9 @@ from pareto_monoped.design import BASE_START_HEIGHT_M, CONTROL, LOWER, PAPER_CAS
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.jump import controller
 from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.document import mjcf
 from pareto_monoped.jump.evaluate import Evaluator, evaluate_robots
-from pareto_monoped.jump.model import mjcf, start_pose
+from pareto_monoped.jump.model import start_pose
 from pareto_monoped.jump.population import first_records
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.robot.build import build_robot

@@ -8,10 +8,10 @@ import pytest
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import CONTROL, LOWER, PAPER_CASES, UPPER, columns, complete
-from pareto_monoped.jump.balance import balance_errors, energy_balance
+from pareto_monoped.jump.balance import balanced, energy_balance
 from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.document import mjcf
 from pareto_monoped.jump.evaluate import Evaluator
-from pareto_monoped.jump.model import mjcf
 from pareto_monoped.jump.single import trace_of
 from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import robot_arrays
@@ -89,7 +89,7 @@ def test_the_balance_closes_and_the_rails_take_their_friction_along_the_way():
 
 def test_many_balances_close_at_once():
     robots, control = robot_arrays(ALL, MAP), columns(ALL, CONTROL)
-    assert np.all(balance_errors(robots, control, STAND) < 0.002)
+    assert np.all(balanced(robots, control, STAND).error < 0.002)
 
 
 def test_a_batch_and_a_single_jump_are_the_same_to_the_bit(jumps):

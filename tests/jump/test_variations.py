@@ -34,6 +34,7 @@ def neutral(n=2, **changes):
         "link_lengths_m": np.zeros((n, 2)),
         "gains": np.ones((n, 3)),
         "delays_s": np.zeros(n),
+        **dict.fromkeys(("gear_loss", "chain_loss", "winding_resistance", "rotor_inertia", "rebound"), np.ones(n)),
         "stand_mass": np.ones(n),
         "rail_friction": np.ones(n),
     }
@@ -92,6 +93,60 @@ def test_what_a_calibration_can_say_is_as_if_it_said_so(evaluator, change, table
     np.testing.assert_allclose(varied.height_m, calibrated.height_m, rtol=rtol)
     np.testing.assert_allclose(varied.energy_j, calibrated.energy_j, rtol=10.0 * rtol)
     assert (varied.height_m != evaluator(DESIGNS).height_m).any()
+
+
+@pytest.mark.parametrize(
+    ("change", "tables"),
+    [
+        ({"chain_loss": np.full(2, 2.5)}, {"drive": {"chain_efficiency": 1.0 - 2.5 * 0.02}}),
+        ({"winding_resistance": np.full(2, 1.0 + 0.00393 * 30.0)}, {"drive": {"winding_rise_k": 30.0}}),
+        ({"gear_loss": np.zeros(2)}, {"drive": {"mesh_losses": False}}),
+    ],
+    ids=["chain", "winding", "gears without losses"],
+)
+def test_losses_and_warmth_are_as_if_the_calibration_said_so(evaluator, change, tables):
+    varied, calibrated = evaluator(DESIGNS, variations=neutral(**change)), as_calibrated(evaluator, **tables)
+    for name in ("height_m", "energy_j", "electrical_energy_j", "drive_loss_j"):
+        np.testing.assert_allclose(getattr(varied, name), getattr(calibrated, name), rtol=1e-9)
+    assert (varied.electrical_energy_j != evaluator(DESIGNS).electrical_energy_j).all()
+
+
+def test_twice_the_loss_of_gears_is_twice_what_they_lose_of_the_torque(evaluator):
+    varied, plain = evaluator(DESIGNS, variations=neutral(gear_loss=np.full(2, 2.0))), evaluator(DESIGNS)
+    assert (varied.height_m < plain.height_m).all()
+    share = varied.drive_loss_j / (varied.energy_j - varied.absorbed_j)
+    before = plain.drive_loss_j / (plain.energy_j - plain.absorbed_j)
+    robots = robot_arrays(DESIGNS, evaluator.actuator_map)
+    knee = robots.efficiency_total[:, 1]
+    np.testing.assert_allclose(share / before, (1.0 - 0.98 * (2.0 * knee - 1.0)) / (1.0 - 0.98 * knee), rtol=0.03)
+
+
+def test_a_heavier_rotor_is_a_robot_with_that_rotor(evaluator):
+    """All moments of what turns at the motors' speed, by hand: J g^2 at the joints, J g and J to the thigh."""
+    robots, more = robot_arrays(DESIGNS, evaluator.actuator_map), 0.2
+    rotor, ratio = robots.rotor_inertia_kg_m2, robots.ratio
+    heavier = replace(
+        robots,
+        rotor_inertia_kg_m2=1.2 * rotor,
+        armature_kg_m2=robots.armature_kg_m2 + more * rotor * ratio**2,
+        knee_reflected_kg_m2=robots.knee_reflected_kg_m2 + more * (rotor * ratio**2)[:, 1],
+        knee_coupling_kg_m2=robots.knee_coupling_kg_m2 + more * (rotor * ratio)[:, 1],
+        rotor_excess_kg_m2=robots.rotor_excess_kg_m2 + more * rotor[:, 1],
+    )
+    varied = evaluator(DESIGNS, variations=neutral(rotor_inertia=np.full(2, 1.2)))
+    expected = evaluate_robots(heavier, complete_control(DESIGNS[:, 4:7]), CALIBRATION)
+    np.testing.assert_allclose(varied.height_m, expected.height_m, rtol=1e-9)
+    assert (varied.height_m < evaluator(DESIGNS).height_m).all()
+
+
+def test_less_rebound_takes_more_of_the_energy_at_the_stop():
+    elastic = Evaluator(map_for("VT8020"), load_calibration("elastic"))
+    dull, plain = elastic(DESIGNS, variations=neutral(rebound=np.full(2, 0.5))), elastic(DESIGNS)
+    lively = elastic(DESIGNS, variations=neutral(rebound=np.full(2, 1.9)))
+    assert (dull.stop_energy_j != plain.stop_energy_j).all()
+    assert (dull.height_m > plain.height_m).all()
+    assert (lively.height_m < plain.height_m).all()
+    same(elastic(DESIGNS, variations=neutral()), plain)
 
 
 def test_gains_and_lengths_are_those_of_another_design_with_the_same_masses(evaluator):

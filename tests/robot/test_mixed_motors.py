@@ -12,8 +12,8 @@ from pareto_monoped.design import LOWER, PAPER_CASES, UPPER, complete
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.document import mjcf
 from pareto_monoped.jump.evaluate import Evaluator
-from pareto_monoped.jump.model import mjcf
 from pareto_monoped.robot.build import build_robot
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.strength.factors import TABLE, capacities

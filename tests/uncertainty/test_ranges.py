@@ -1,9 +1,10 @@
 """The file of ranges: what is shipped, what a user's own may say, what is refused."""
 
+import numpy as np
 import pytest
 
 from pareto_monoped.errors import InputError
-from pareto_monoped.uncertainty.settings import load_uncertainty, uncertainty_of
+from pareto_monoped.uncertainty.settings import LATER_RANGES, load_uncertainty, uncertainty_of
 
 
 def test_the_shipped_ranges_have_sources_and_are_those_that_the_documents_name():
@@ -11,17 +12,36 @@ def test_the_shipped_ranges_have_sources_and_are_those_that_the_documents_name()
     ends = {name: (found.lower, found.upper) for name, found in shipped.ranges.items()}
     assert ends == {
         "masses": (-0.05, 0.05),
-        "peak_torque": (-0.1, 0.1),
-        "friction": (-0.5, 0.5),
-        "damping": (-0.5, 0.5),
+        "peak_torque": (-0.1, 0.13),
+        "friction": (-0.6, 0.5),
+        "damping": (-0.9, 1.0),
         "stop_stiffness": (-0.3, 0.3),
         "foot_stiffness": (-0.3, 0.3),
         "link_length_m": (-0.0005, 0.0005),
         "gains": (-0.05, 0.05),
         "delay_s": (0.0, 0.003),
         "battery_voltage": (-0.1, 0.0),
+        "gear_loss": (-0.5, 1.0),
+        "chain_loss": (-0.5, 1.5),
+        "winding_resistance": (-0.15, 0.25),
+        "rotor_inertia": (-0.2, 0.2),
+        "rebound": (-0.4, 0.9),
     }
     assert all(found.source for found in shipped.ranges.values())
+
+
+def test_ranges_stored_before_losses_were_uncertain_vary_none_of_them():
+    """They are read as they were stored, on a stand and elsewhere, and their samples leave these factors at 1."""
+    from pareto_monoped.jump.calibration import load_calibration
+    from pareto_monoped.uncertainty.samples import sobol_samples, variations
+
+    earlier = {name: value for name, value in load_uncertainty().as_dict().items() if name not in LATER_RANGES}
+    for stand in (False, True):
+        found = uncertainty_of(earlier, source="stored").where(stand=stand)
+        assert not set(LATER_RANGES) & set(found.ranges)
+        varied = variations(sobol_samples(found, 16), 2, load_calibration("stand" if stand else "reference"))
+        assert all((getattr(varied, name) == 1.0).all() for name in LATER_RANGES)
+        assert np.ptp(varied.friction) > 0.1
 
 
 def test_a_file_replaces_what_it_names(tmp_path):

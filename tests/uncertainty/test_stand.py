@@ -35,12 +35,12 @@ def test_the_ranges_are_there_with_a_stand_only():
     assert (own.stand_mass, own.rail_friction) == (MINE, STAND.rail_friction)
 
 
-def test_without_a_stand_the_points_are_those_of_sixteen_coordinates():
-    """As before there were stands; with one there are two more coordinates, which fill their ranges evenly."""
-    generator = qmc.Sobol(d=16, scramble=True, rng=np.random.default_rng(4))
+def test_without_a_stand_the_points_are_those_of_twenty_one_coordinates():
+    """With a stand there are two more coordinates, which fill their ranges evenly."""
+    generator = qmc.Sobol(d=21, scramble=True, rng=np.random.default_rng(4))
     np.testing.assert_array_equal(sobol_samples(PLAIN, 16, 4).points, generator.random_base2(4))
     drawn = sobol_samples(STAND, 16, 4)
-    assert drawn.points.shape == (16, 18)
+    assert drawn.points.shape == (16, 23)
     for name in ("stand_mass", "rail_friction"):
         ends = STAND.ranges[name]
         cells = np.floor(16 * (drawn.values[name][:, 0] - ends.lower) / (ends.upper - ends.lower) + 1e-9)
@@ -67,7 +67,7 @@ def test_jumps_under_uncertainty_are_those_of_a_stand_as_varied():
         assert found.height_m[k] == pytest.approx(alone.height_m[0], rel=1e-12)
 
 
-@pytest.mark.parametrize(("name", "count"), [("stand", 18), ("reference", 16)])
+@pytest.mark.parametrize(("name", "count"), [("stand", 23), ("reference", 21)])
 def test_a_search_draws_what_its_calibration_has(name, count):
     """A study that names no ranges of the stand, as one with a calibration file does not, has the shipped ones."""
     evaluator = Evaluator(map_for("VT8020"), load_calibration(name))
@@ -88,6 +88,6 @@ def test_robust_and_sensitivity_of_a_study_on_the_stand(tmp_path):
     assert read_robustness(db)[trial].settings["uncertainty"] == STAND.as_dict()
     _, assumptions = sensitivity(db, trial, PLAIN, blocks=32, workers=2)
     changes = {one.factor.name: one.measures["height_m"].change for one in assumptions.factors}
-    assert len(changes) == 18
+    assert len(changes) == 23
     assert changes["stand_mass"] < 0.0
     assert changes["rail_friction"] < 0.0

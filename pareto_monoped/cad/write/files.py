@@ -20,7 +20,7 @@ from pareto_monoped.cad.write.meshes import METRES, Visual, colliders
 from pareto_monoped.cad.write.mjcf import jump_record, replay_script
 from pareto_monoped.design import Design
 from pareto_monoped.jump.calibration import Calibration, on_stand
-from pareto_monoped.jump.model import mjcf as simulated_mjcf
+from pareto_monoped.jump.document import mjcf as simulated_mjcf
 from pareto_monoped.jump.model import start_pose
 from pareto_monoped.robot.population import RobotArrays
 

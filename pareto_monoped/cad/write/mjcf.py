@@ -22,13 +22,25 @@ _NUMBERS = (
     *(
         "heat_w_per_n2_m2",
         "lower_stop_rad",
+        "upper_stop_rad",
+        "bumper_n_m",
+        "bumper_per_rad",
+        "bumper_s_per_rad",
+        "bus",
+        "ratio",
+        "rotor_kg_m2",
+        "sprocket_radius_m",
         "flight_stiffness_n_m_per_rad",
         "flight_damping_n_m_s_per_rad",
         "start_rad",
     ),
 )
-"""Fields of the controller's record that the replay reads; the start height stands in the MJCF's keyframe."""
-_EXPECTED = ("height_m", "energy_j", "electrical_energy_j")
+"""Fields of the controller's record that the replay reads, or that give loads; the start stands in the keyframe."""
+_EXPECTED = (
+    *("height_m", "energy_j", "electrical_energy_j", "peak_gear_torque_hip_n_m", "peak_gear_torque_knee_n_m"),
+    *("peak_chain_tension_n", "peak_stop_torque_n_m", "peak_foot_force_n"),
+)
+"""Measures that the replay and other simulators are held against."""
 
 
 def mjcf_with_meshes(document: str, shown: Sequence[Visual], solid: Sequence[Collider]) -> str:

@@ -17,9 +17,10 @@ from pareto_monoped.cad.write.mjcf import jump_record, mjcf_with_meshes, replay_
 from pareto_monoped.cad.write.urdf import urdf
 from pareto_monoped.design import PAPER_CASES, Design
 from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.document import mjcf
 from pareto_monoped.jump.end_stops import end_stops as end_stops_of
 from pareto_monoped.jump.end_stops import slow_torque_n_m
-from pareto_monoped.jump.model import mjcf, start_pose
+from pareto_monoped.jump.model import start_pose
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
 
 CALIBRATION = load_calibration("reference")

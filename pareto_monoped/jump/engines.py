@@ -1,0 +1,103 @@
+"""Two engines behind one interface: a population at rest, which MuJoCo or the compiled leg lets jump."""
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pareto_monoped.design import Floats
+from pareto_monoped.jump.calibration import Calibration, SpringContact
+from pareto_monoped.jump.model import StartPose, joint_friction_n_m, start_qpos
+from pareto_monoped.jump.population import Records, first_records, prepare
+from pareto_monoped.jump.variations import Variations, vary_records
+from pareto_monoped.robot.population import RobotArrays
+
+
+class Jumping(Protocol):
+    """The jumps of n robots in progress."""
+
+    records: Records  #: the controller's record of each, shape (n,) of ``RECORD``
+
+    def run(self) -> None:
+        """Make all jumps to their end."""
+
+    def complaints(self) -> list[str]:
+        """Return what the engine found wrong in each jump; empty where nothing was."""
+
+
+def population_of(
+    robots: RobotArrays,
+    control: Floats,
+    pose: StartPose,
+    calibration: Calibration,
+    threads: int = 1,
+    variations: Variations | None = None,
+) -> Jumping:
+    """Return n robots that can stand, at rest, for the engine of the calibration; see ``population.prepare``."""
+    if calibration.simulation.engine == "mujoco":
+        return prepare(robots, control, pose, calibration, threads, variations)
+    return _planar(robots, control, pose, calibration, threads, variations)
+
+
+@dataclass(slots=True, kw_only=True)
+class PlanarPopulation:
+    """The jumps of n robots by the engine ``compiled``."""
+
+    records: Records
+    grounds: NDArray[np.void]  #: shape (n,) of ``planar.GROUND``
+    start: Floats  #: positions at rest, shape (n, nv)
+    controls: int  #: torques that the controller sets
+    threads: int
+
+    def run(self) -> None:
+        """Make all jumps to their end; a jump beyond all bounds ends as diverged."""
+        from pareto_monoped.jump.planar import stepper
+
+        jumps, n = stepper(), len(self.records)
+        cuts = np.linspace(0, n, min(self.threads, max(n, 1)) + 1).astype(int).tolist()
+        parts = [slice(first, last) for first, last in pairwise(cuts)]
+
+        def of_part(rows: slice) -> None:
+            jumps(self.records[rows], self.grounds[rows], self.start[rows], self.controls)
+
+        if len(parts) == 1:
+            of_part(parts[0])
+            return
+        with ThreadPoolExecutor(len(parts)) as pool:
+            list(pool.map(of_part, parts))
+
+    def complaints(self) -> list[str]:
+        """Return nothing: what is wrong with a jump of this engine is its status."""
+        return [""] * len(self.records)
+
+
+def _planar(
+    robots: RobotArrays,
+    control: Floats,
+    pose: StartPose,
+    calibration: Calibration,
+    threads: int,
+    variations: Variations | None,
+) -> PlanarPopulation:
+    from pareto_monoped.jump.planar import FLOOR, GROUND
+
+    assert isinstance(calibration.contact, SpringContact)
+    records = first_records(robots, control, calibration)
+    grounds = np.zeros(len(robots), dtype=GROUND)
+    for name in FLOOR:
+        grounds[name] = getattr(calibration.contact, name)
+    grounds["joint_friction_n_m"] = joint_friction_n_m(robots, calibration)
+    if variations is not None:
+        vary_records(records, robots.stops, calibration, variations)
+        grounds["stiffness_n_per_m"] *= variations.foot_stiffness
+        grounds["joint_friction_n_m"] *= variations.friction[:, None]
+    return PlanarPopulation(
+        records=records,
+        grounds=grounds,
+        start=start_qpos(calibration, robots.start_height_m, pose),
+        controls=4 if calibration.joints.stop_law == "hunt_crossley" else 2,
+        threads=threads,
+    )
