@@ -235,7 +235,7 @@ def _jump_on_stand(design: Design, maps: Maps, calibration: Calibration) -> dict
 
 
 def _evaluated(designs: Mapping[str, Design], maps: Maps, calibration: Calibration) -> Evaluations:
-    return Evaluator(maps, calibration)(np.stack([design.as_array() for design in designs.values()]))
+    return Evaluator(maps, calibration.by("mujoco"))(np.stack([design.as_array() for design in designs.values()]))
 
 
 def _loads(design: Design, results: Evaluations, row: int) -> Loads:

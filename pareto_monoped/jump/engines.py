@@ -89,7 +89,7 @@ def _planar(
     grounds = np.zeros(len(robots), dtype=GROUND)
     for name in FLOOR:
         grounds[name] = getattr(calibration.contact, name)
-    grounds["joint_friction_n_m"] = joint_friction_n_m(robots, calibration)
+    grounds["joint_friction_n_m"] = joint_friction_n_m(robots, calibration.joints)
     if variations is not None:
         vary_records(records, robots.stops, calibration, variations)
         grounds["stiffness_n_per_m"] *= variations.foot_stiffness

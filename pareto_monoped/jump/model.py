@@ -150,7 +150,7 @@ def model_fields(robots: RobotArrays, calibration: Calibration) -> dict[str, Flo
     armature, damping, friction = np.zeros((3, n, len(names)))
     armature[:, motors] = robots.armature_kg_m2
     damping[:, motors] = joint_damping(robots, joints)
-    friction[:, motors] = joint_friction_n_m(robots, calibration)
+    friction[:, motors] = joint_friction_n_m(robots, calibration.joints)
     friction[:, names.index("slide_z")] = rail_friction_n(calibration)
     tendons = []  # armature, stiffness, damping, then both coefficients; in the order of ``_tendons``
     if elastic:
@@ -217,9 +217,8 @@ def joint_damping(robots: RobotArrays, joints: Joints) -> Floats:
     return damping
 
 
-def joint_friction_n_m(robots: RobotArrays, calibration: Calibration) -> Floats:
+def joint_friction_n_m(robots: RobotArrays, joints: Joints) -> Floats:
     """Return Coulomb friction of hip and knee, shape (n, 2)."""
-    joints = calibration.joints
     return joints.friction_n_m + joints.friction_share * robots.peak_torque_n_m
 
 

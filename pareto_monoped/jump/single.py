@@ -48,9 +48,9 @@ class JumpResult:
 
 
 def simulate(design: Design, maps: Maps, calibration: Calibration, *, trace: bool = False) -> JumpResult:
-    """Jump once, with the gearboxes of both joints or of hip and knee; ``trace`` records every step."""
+    """Jump once by MuJoCo, with the gearboxes of both joints or of hip and knee; ``trace`` records every step."""
     values = design.as_array()[None, :]
-    evaluations = Evaluator(maps, calibration)(values)
+    evaluations = Evaluator(maps, calibration.by("mujoco"))(values)
     rows: dict[str, Floats] = {}
     if trace and evaluations.status[0] not in ("bad_input", "no_gearbox", "cannot_stand"):
         robots = robot_arrays(values, maps, calibration.mass)

@@ -86,7 +86,8 @@ def jump_record(arrays: RobotArrays, design: Design, calibration: Calibration) -
     from pareto_monoped.jump.controller_record import TOUCH_M
 
     control = columns(design.as_array()[None], CONTROL)
-    record, jump = first_records(arrays, control, calibration)[0], evaluate_robots(arrays, control, calibration)
+    record = first_records(arrays, control, calibration)[0]
+    jump = evaluate_robots(arrays, control, calibration.by("mujoco"))
     numbers = {name: _finite(record[name]) for name in _NUMBERS}
     numbers |= {"touch_m": TOUCH_M, "standby_power_w": calibration.drive.standby_power_w}
     numbers["expected"] = {name: _finite(getattr(jump, name)[0]) for name in _EXPECTED}

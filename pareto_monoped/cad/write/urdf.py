@@ -7,7 +7,7 @@ import numpy as np
 
 from pareto_monoped.cad.write.meshes import Collider, Visual, numbers
 from pareto_monoped.jump.calibration import Joints
-from pareto_monoped.jump.model import joint_damping
+from pareto_monoped.jump.model import joint_damping, joint_friction_n_m
 from pareto_monoped.robot.population import RobotArrays
 from pareto_monoped.robot.units import BODIES, JOINTS
 
@@ -112,5 +112,5 @@ def _add_joint(root: ET.Element, arrays: RobotArrays, joints: Joints, joint: int
     effort, speed = arrays.peak_torque_n_m[0, joint], arrays.no_load_speed_rad_per_s[0, joint]
     reach = {"lower": numbers(stop.lower_rad), "upper": numbers(stop.upper_rad)}
     ET.SubElement(element, "limit", reach, effort=numbers(effort), velocity=numbers(speed))
-    damping = joint_damping(arrays, joints)[0, joint]
-    ET.SubElement(element, "dynamics", damping=numbers(damping), friction=numbers(joints.friction_n_m))
+    losses = {"damping": joint_damping(arrays, joints), "friction": joint_friction_n_m(arrays, joints)}
+    ET.SubElement(element, "dynamics", {name: numbers(values[0, joint]) for name, values in losses.items()})
