@@ -37,8 +37,9 @@ def environment() -> dict[str, str]:
 def decisive(study: Study, contents: Mapping[str, Any], package_versions: Mapping[str, str]) -> dict[str, Any]:
     """Return all that changes results, as JSON values; ``contents`` are those of ``motor`` and ``calibration``."""
     settings = {key: value for key, value in study.as_dict().items() if key not in NOT_RESULTS}
-    # Not the names of motor and calibration decide, but their contents, which stand beside the settings.
-    settings = {key: value for key, value in settings.items() if key not in (*MOTOR_KEYS, "calibration")}
+    # Not the names of motor and calibration decide, but their contents, which stand beside the settings, the engine
+    # among those of the calibration.
+    settings = {key: value for key, value in settings.items() if key not in (*MOTOR_KEYS, "calibration", "engine")}
     if (sampling := settings.pop("uncertainty", None)) and study.robust_names:
         # Not what the ranges are called and where they come from, but their ends.
         settings["uncertainty"] = {

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,7 +59,8 @@ class Study:
     ``rules`` are those of the gearboxes, see ``actuator.settings``. ``audit`` says whether the front is audited when
     the study ends; ill-conditioned designs then leave it. ``strength`` says whether a feasible design must hold: every
     measure of strength is then constrained. ``gear_list`` says whether a free gear ratio goes through the list of
-    gearboxes, and a stored design has their real ratios; else it is any ratio, as up to version 0.2.0. ``uncertainty``
+    gearboxes, and a stored design has their real ratios; else it is any ratio, as up to version 0.2.0. ``engine`` makes
+    the jumps in place of the calibration's. ``uncertainty``
     is there where the file has such a table, or an objective or a constraint is of jumps under uncertainty.
     ``shared_iterations`` says whether the iterations of a weighted search are each weight's share of the budget,
     because the file gives none; it is not stored.
@@ -78,6 +79,7 @@ class Study:
     hip_motor: Named = None
     knee_motor: Named = None
     calibration: str
+    engine: Literal["mujoco", "compiled"] | None = None
     rules: RuleSet = "paper"
     evaluations: int
     seed: int
@@ -197,7 +199,7 @@ class Study:
         del plain["shared_iterations"]
         if self.uncertainty is not None:
             plain["uncertainty"] = self.uncertainty.as_dict()
-        defaults = {"rules": "paper", "strength": False, "gear_list": False, "uncertainty": None}
+        defaults = {"rules": "paper", "strength": False, "gear_list": False, "uncertainty": None, "engine": None}
         for key, default in (defaults | dict.fromkeys(MOTOR_KEYS)).items():
             if plain[key] == default:
                 del plain[key]
@@ -265,6 +267,7 @@ def _require_names(study: Study, source: str) -> None:
 
 _AS_IN_FILE = (
     *("name", "description", "case", "calibration", "evaluations", "seed", "stop", "audit", "strength", "gear_list"),
+    "engine",
 )
 
 

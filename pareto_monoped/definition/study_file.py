@@ -72,6 +72,7 @@ class StudyFile(Strict):
     hip_motor: Any = None
     knee_motor: Any = None
     calibration: Annotated[str, Field(min_length=1, max_length=1000)] = "reference"
+    engine: Literal["mujoco", "compiled"] | None = None
     rules: RuleSet = "paper"  # of a stored study; a file without it takes the default of ``rules_for``
     evaluations: Annotated[int, Field(ge=1, le=100_000_000)]
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 1

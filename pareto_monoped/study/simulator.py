@@ -125,6 +125,11 @@ def continued_simulator(
 def _simulator(
     study: Study, motors: Sequence[Motor], calibration: Calibration, workers: int, executor: Executor | None
 ) -> Simulator:
+    if study.engine is not None:
+        try:
+            calibration = calibration.by(study.engine)
+        except ValueError as problem:
+            raise StudyError(f"engine = {study.engine!r}: {problem}") from None
     names = [motor.name for motor in motors]
     for name in names:
         if names.count(name) > 1:
