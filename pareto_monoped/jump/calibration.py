@@ -280,12 +280,12 @@ class Calibration(Strict):
         """Refuse torques in flight with a gate that ends them, and a stand on which the base slides away."""
         if self.stand is not None and self.simulation.base_slides:
             raise ValueError("simulation.base_slides must be false with a table stand, whose rails hold it; correct it")
-        if self.simulation.engine == "compiled" and (lacks := self._lacks_for_compiled()):
+        if self.simulation.engine == "compiled" and (lacks := self.lacks_for_compiled()):
             raise ValueError(f"simulation.engine 'compiled' needs {lacks}; choose that, or the engine 'mujoco'")
         if self.controller.flight is not None and not isinstance(self.gate, ContactGate):
             raise ValueError(f"gate.rule {self.gate.rule!r} must be 'contact' if controller.flight is set; drop one")
 
-    def _lacks_for_compiled(self) -> str:
+    def lacks_for_compiled(self) -> str:
         """Return what the engine ``compiled`` would need, empty if nothing."""
         stops = self.joints.hip_stop or self.joints.knee_stop or self.joints.stops == "parts"
         if self.simulation.integrator != "Euler":

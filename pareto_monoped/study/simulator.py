@@ -13,7 +13,7 @@ from pareto_monoped.actuator.motors import load_motor, motor_source, motor_value
 from pareto_monoped.actuator.search import map_of
 from pareto_monoped.definition.study import Study
 from pareto_monoped.design import LOWER, PAPER_CASES, UPPER, complete
-from pareto_monoped.errors import CalibrationError, StudyError
+from pareto_monoped.errors import CalibrationError, StudyError, complaint
 from pareto_monoped.jump.calibration import Calibration, calibration_values, load_calibration
 from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
@@ -125,11 +125,11 @@ def continued_simulator(
 def _simulator(
     study: Study, motors: Sequence[Motor], calibration: Calibration, workers: int, executor: Executor | None
 ) -> Simulator:
+    if study.engine == "compiled" and (lacks := calibration.lacks_for_compiled()):
+        allowed = f"'mujoco' with a calibration without {lacks}"
+        raise StudyError(complaint("engine", study.engine, allowed, "drop it, or choose another calibration"))
     if study.engine is not None:
-        try:
-            calibration = calibration.by(study.engine)
-        except ValueError as problem:
-            raise StudyError(f"engine = {study.engine!r}: {problem}") from None
+        calibration = calibration.by(study.engine)
     names = [motor.name for motor in motors]
     for name in names:
         if names.count(name) > 1:

@@ -7,7 +7,7 @@ import pytest
 from pareto_monoped.analysis.robustness import robust
 from pareto_monoped.analysis.sensitivity import sensitivity
 from pareto_monoped.analysis.verify import verify
-from pareto_monoped.jump import audit, screen, shared
+from pareto_monoped.jump import audit, shared
 from pareto_monoped.jump.peers import cluster, processes
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import resume, run
@@ -86,7 +86,7 @@ def test_on_two_processes(on_threads, two_processes, tmp_path):
     counting = Counting(crew)
     whole(tmp_path / "s.db", counting)
     assert counting.tasks > 6
-    assert counting.functions == {shared.jumps_of, screen._screened_of}
+    assert counting.functions == {shared.jumps_of, audit._balanced_of}
     assert_same_study(on_threads, tmp_path / "s.db")
     assert told == []
 
@@ -115,7 +115,7 @@ def test_audits_after_the_screen_are_done_by_the_executor(tmp_path):
     with ThreadPoolExecutor(2) as pool:
         counting = Counting(pool)
         run(study, tmp_path / "s.db", workers=2, executor=counting)
-    assert counting.functions == {shared.jumps_of, screen._screened_of, audit._balances_of}
+    assert counting.functions == {shared.jumps_of, audit._balanced_of}
     assert_same_study(tmp_path / "threads.db", tmp_path / "s.db")
 
 
