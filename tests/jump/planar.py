@@ -45,14 +45,30 @@ LOADS = "hip gear, knee gear, chain, stop, foot"
 @numba.njit(cache=True)
 def turned(angle, x, z):
     """A vector turned about +y."""
-    return np.array([np.cos(angle) * x + np.sin(angle) * z, np.cos(angle) * z - np.sin(angle) * x])
+    return np.cos(angle) * x + np.sin(angle) * z, np.cos(angle) * z - np.sin(angle) * x
 
 
 @numba.njit(cache=True)
 def jacobian(upper, lower):
-    """Of the point hip + upper + lower, of which ``upper`` turns with the thigh and ``lower`` with the shank."""
-    arm = upper + lower
-    return np.array([[1.0, 0.0, arm[1], lower[1]], [0.0, 1.0, -arm[0], -lower[0]]])
+    """Both rows of that of the point hip + upper + lower: ``upper`` turns with the thigh, ``lower`` with the shank."""
+    x, z = upper[0] + lower[0], upper[1] + lower[1]
+    return np.array([1.0, 0.0, z, lower[1], 0.0, 0.0]), np.array([0.0, 1.0, -x, -lower[0], 0.0, 0.0])
+
+
+@numba.njit(cache=True)
+def dot(one, other):
+    found = 0.0
+    for i in range(len(other)):
+        found += one[i] * other[i]
+    return found
+
+
+@numba.njit(cache=True)
+def add_square(matrix, factor, row):
+    """Add a row's outer product with itself."""
+    for i in range(4):
+        for j in range(4):
+            matrix[i, j] += factor * row[i] * row[j]
 
 
 @numba.njit(cache=True)
@@ -60,18 +76,18 @@ def bodies(q, m):
     """Mass matrix, Jacobians of both centres, and the vectors hip to thigh's centre, hip to knee, knee to shank's."""
     knee = turned(q[2], 0.0, -m.thigh)
     first, second = turned(q[2], *m.centres[0]), turned(q[2] + q[3], *m.centres[1])
-    none = np.zeros(2)
-    thigh, shank = jacobian(first, none), jacobian(knee, second)
-    matrix, n = np.zeros((len(q), len(q))), len(q)
-    matrix[:4, :4] = m.mass[1] * thigh.T @ thigh + m.mass[2] * shank.T @ shank
-    matrix[0, 0] += m.mass[0] + m.stand
-    matrix[1, 1] += m.mass[0] + m.stand
+    thigh, shank = jacobian(first, (0.0, 0.0)), jacobian(knee, second)
+    n = len(q)
+    matrix = np.zeros((n, n))
+    for k in range(2):
+        add_square(matrix, m.mass[1], thigh[k])
+        add_square(matrix, m.mass[2], shank[k])
+        matrix[k, k] += m.mass[0] + m.stand
+        matrix[n - 2 + k, n - 2 + k] += m.reflected[k]
     matrix[2, 2] += m.inertia[0] + m.inertia[1]
     matrix[2, 3] += m.inertia[1]
     matrix[3, 2] += m.inertia[1]
     matrix[3, 3] += m.inertia[1]
-    matrix[n - 2, n - 2] += m.reflected[0]
-    matrix[n - 1, n - 1] += m.reflected[1]
     matrix[2, n - 1] += m.coupling
     matrix[n - 1, 2] += m.coupling
     return matrix, thigh, shank, first, knee, second
@@ -87,10 +103,7 @@ def law(r, values, inverse):
 
 @numba.njit(cache=True)
 def solved(left, right):
-    """Solution of equations with a symmetric, positive definite matrix by elimination; both arguments are lost.
-
-    Numba takes ten times as long to compile a call of LAPACK, which is more than all jumps take here.
-    """
+    """Solution of equations with a symmetric, positive definite matrix by elimination; both arguments are lost."""
     for i in range(len(right)):
         for j in range(i + 1, len(right)):
             factor = left[j, i] / left[i, i]
@@ -108,7 +121,7 @@ def solved(left, right):
 def spring_torque(j, q, v, m):
     """On joint ``j``, from its motor."""
     wound, play = q[4 + j] - q[2 + j], 0.5 * m.play
-    taut = np.sign(wound) * max(abs(wound) - play, 0.0)
+    taut = wound - min(max(wound, -play), play)
     return m.spring[j] * taut + m.damper[j] * (v[4 + j] - v[2 + j])
 
 
@@ -123,10 +136,12 @@ def acceleration(q, v, motor, m, mode, loads):
     """
     matrix, thigh, shank, first, knee, second = bodies(q, m)
     w1, w2, n = v[2] ** 2, (v[2] + v[3]) ** 2, len(q)
-    down, force = np.array([0.0, GRAVITY]), np.zeros(n)
-    force[:4] = -m.mass[1] * thigh.T @ (down - first * w1) - m.mass[2] * shank.T @ (down - knee * w1 - second * w2)
+    force, beyond, side, virtual, push = np.zeros(n), np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
+    for i in range(4):
+        force[i] += m.mass[1] * (thigh[0][i] * first[0] * w1 + thigh[1][i] * (first[1] * w1 - GRAVITY))
+        force[i] += m.mass[2] * shank[0][i] * (knee[0] * w1 + second[0] * w2)
+        force[i] += m.mass[2] * shank[1][i] * (knee[1] * w1 + second[1] * w2 - GRAVITY)
     force[1] -= (m.mass[0] + m.stand) * GRAVITY + m.rails * np.tanh(v[1] / CREEP)
-    beyond, side, virtual, push = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
     for j in range(2):
         i = n - 2 + j
         torque = motor[j] - m.loss[j] * abs(motor[j]) * np.tanh(v[i] / m.loss_speed)
@@ -148,29 +163,30 @@ def acceleration(q, v, motor, m, mode, loads):
             push[j] = k * beyond[j] - b * side[j] * v[2 + j]
     foot = turned(q[2] + q[3], 0.0, -m.shank)
     depth = m.radius - (q[1] + knee[1] + foot[1])
-    along, up = np.zeros(n), np.zeros(n)
-    point = jacobian(knee, foot + np.array([0.0, 0.5 * depth - m.radius]))
-    along[:4], up[:4] = point[0], point[1]
+    along, up = jacobian(knee, (foot[0], foot[1] + 0.5 * depth - m.radius))
     stick = pull_n = pull_t = 0.0
     if depth > 0:
         stick, k, b = law(depth, m.foot, m.inverse[2])
-        pull_n, pull_t = k * depth - b * (up @ v), -b * (along @ v)
+        pull_n, pull_t = k * depth - b * dot(up, v), -b * dot(along, v)
     slide = stick / (1 + m.mu**2 / m.slip)
 
-    a, found = np.zeros(n), np.zeros(5, np.int64)
+    found, both = np.zeros(5, np.int64), np.zeros(6)
     for attempt in range(154):
         if attempt >= 10:
             c = attempt - 10
-            mode[:] = np.array([c % 4, c // 4 % 3 - 1, c // 12 % 3 - 1, c // 36 % 2, c // 72])
+            mode[0], mode[1], mode[2], mode[3], mode[4] = c % 4, c // 4 % 3 - 1, c // 12 % 3 - 1, c // 36 % 2, c // 72
         left, right = matrix.copy(), force.copy()
         if mode[0] == 1:
-            left += stick * (np.outer(up, up) + m.slip * np.outer(along, along))
-            right += stick * (pull_n * up + m.slip * pull_t * along)
+            add_square(left, stick, up)
+            add_square(left, stick * m.slip, along)
+            for i in range(4):
+                right[i] += stick * (pull_n * up[i] + m.slip * pull_t * along[i])
         elif mode[0] > 1:
             signed = m.mu * (5 - 2 * mode[0])
-            both = up + signed * along
-            left += slide * np.outer(both, both)
-            right += slide * (pull_n + signed * pull_t) * both
+            for i in range(4):
+                both[i] = up[i] + signed * along[i]
+                right[i] += slide * (pull_n + signed * pull_t) * both[i]
+            add_square(left, slide, both)
         for j in range(2):
             i, creep = n - 2 + j, 9 / m.inverse[j]
             if mode[1 + j] == 0:
@@ -181,60 +197,78 @@ def acceleration(q, v, motor, m, mode, loads):
                 left[2 + j, 2 + j] += virtual[j]
                 right[2 + j] += virtual[j] * push[j] * side[j]
         if m.guided:
-            left[0, :] = left[:, 0] = right[0] = 0.0
-            left[0, 0] = 1.0
+            for i in range(n):
+                left[0, i] = left[i, 0] = 0.0
+            left[0, 0], right[0] = 1.0, 0.0
         a = solved(left, right)
-        n_pull, t = pull_n - up @ a, pull_t - along @ a
+        normal, t = pull_n - dot(up, a), pull_t - dot(along, a)
         found[0] = 0
-        if depth > 0 and m.slip * abs(t) <= m.mu * n_pull:
+        if depth > 0 and m.slip * abs(t) <= m.mu * normal:
             found[0] = 1
-        elif depth > 0 and n_pull + m.mu * abs(t) > 0:
+        elif depth > 0 and normal + m.mu * abs(t) > 0:
             found[0] = 2 if t > 0 else 3
         for j in range(2):
             i = n - 2 + j
             wanted = 9 / m.inverse[j] * (-a[i] - v[i] / 9.5e-3)
             found[1 + j] = int(wanted > m.friction[j]) - int(wanted < -m.friction[j])
             found[3 + j] = int(virtual[j] > 0 and push[j] - side[j] * a[2 + j] > 0)
-        if np.all(found == mode):
+        same = True
+        for k in range(5):
+            same &= found[k] == mode[k]
+            mode[k] = found[k]
+        if same:
             if mode[0] == 1:
-                loads[4] = stick * np.hypot(n_pull, m.slip * t)
+                loads[4] = stick * np.hypot(normal, m.slip * t)
             elif mode[0] > 1:
-                loads[4] = slide * (n_pull + m.mu * abs(t)) * np.hypot(1.0, m.mu)
+                loads[4] = slide * (normal + m.mu * abs(t)) * np.hypot(1.0, m.mu)
             return a
-        mode[:] = found
     raise ValueError("no consistent set of forces")
 
 
 @numba.njit(cache=True)
 def wanted(q, v, m):
-    """The torques of section II-B, from angles and speeds of both motors."""
-    knee, foot = turned(q[0], 0.0, -m.thigh), turned(q[0] + q[1], 0.0, -m.shank)
-    r, turn = knee + foot, jacobian(knee, foot)[:, 2:].copy()
-    length = np.hypot(r[0], r[1])
-    sine, cosine = -r[0] / length, -r[1] / length
-    axial = m.gains[0] * (m.rest - length) - m.gains[1] * (r @ (turn @ v)) / length
+    """The torques of section II-B, from angles and speeds of both motors, the last two coordinates."""
+    hip, hip_speed, knee_speed = q[len(q) - 2], v[len(q) - 2], v[len(q) - 1]
+    knee, foot = turned(hip, 0.0, -m.thigh), turned(hip + q[len(q) - 1], 0.0, -m.shank)
+    x, z = knee[0] + foot[0], knee[1] + foot[1]
+    along, up = jacobian(knee, foot)
+    length = np.hypot(x, z)
+    sine, cosine = -x / length, -z / length
+    speed = x * (along[2] * hip_speed + along[3] * knee_speed) + z * (up[2] * hip_speed + up[3] * knee_speed)
+    axial = m.gains[0] * (m.rest - length) - m.gains[1] * speed / length
     twist = -m.gains[2] * np.arctan2(sine, cosine) / length
-    weight = m.mass.sum() * GRAVITY
-    return turn.T @ np.array([-axial * sine - twist * cosine, -axial * cosine + twist * sine - weight])
+    weight = (m.mass[0] + m.mass[1] + m.mass[2]) * GRAVITY
+    push_x, push_z = -axial * sine - twist * cosine, -axial * cosine + twist * sine - weight
+    return along[2] * push_x + up[2] * push_z, along[3] * push_x + up[3] * push_z
 
 
 @numba.njit(cache=True)
-def limited(torque, v, m):
-    """Within the motors' peak torque, and within their voltage where they drive."""
-    most = m.peak.copy()
-    for j in range(2):
-        if torque[j] * v[j] > 0:
-            most[j] *= min(max((m.no_load[j] - abs(v[j])) / (m.no_load[j] - m.corner[j]), 0.0), 1.0)
-    return np.minimum(np.maximum(torque, -most), most)
+def limited(torque, v, m, j):
+    """Within a motor's peak torque, and within its voltage where it drives."""
+    most = m.peak[j]
+    speed = v[len(v) - 2 + j]
+    if torque * speed > 0:
+        most *= min(max((m.no_load[j] - abs(speed)) / (m.no_load[j] - m.corner[j]), 0.0), 1.0)
+    return min(max(torque, -most), most)
+
+
+@numba.njit(cache=True)
+def moved(state, h, rate):
+    """The state after a time at a rate."""
+    found = np.empty(len(state))
+    for i in range(len(state)):
+        found[i] = state[i] + h * rate[i]
+    return found
 
 
 @numba.njit(cache=True)
 def jump(m, q):
     """Height in m, mechanical energy and energy at the battery in J; then the peaks of ``LOADS``."""
-    q, v, mode, n = q.copy(), np.zeros(len(q)), np.zeros(5, np.int64), len(q)
+    n = len(q)
+    q, v, motor, mode = q.copy(), np.zeros(n), np.zeros(2), np.zeros(5, np.int64)
     stood = off = False
     height, energy, battery, h = q[1], 0.0, 0.0, 1e-3 / SUBSTEPS
-    torques, shares, peaks = np.zeros((3000, 2)), np.zeros((3000, 2)), np.zeros(5)
+    torques, shares, peaks, loads = np.zeros((3000, 2)), np.zeros((3000, 2)), np.zeros(5), np.zeros(5)
     for period in range(3000):
         clearance = q[1] - m.thigh * np.cos(q[2]) - m.shank * np.cos(q[2] + q[3]) - m.radius
         stood |= clearance <= 0
@@ -245,41 +279,52 @@ def jump(m, q):
         if off and v[1] <= 0:
             return height, energy, battery, peaks
         u = min(max(read / m.fade, 0.0), 1.0)
-        torques[period] = wanted(q[n - 2 :], v[n - 2 :], m)
-        shares[period] = 0.0 if off else 1 - 3 * u**2 + 2 * u**3
+        torques[period, 0], torques[period, 1] = wanted(q, v, m)
+        shares[period, 0] = shares[period, 1] = 0.0 if off else 1 - 3 * u**2 + 2 * u**3
         if m.release > 0:
             shares[period, 1] *= min(max((knee - m.lower[1]) / m.release, 0.0), 1.0)
         due = period - m.delay
-        motor = shares[due] * limited(torques[due], v[n - 2 :], m) if due >= 0 else np.zeros(2)
+        for j in range(2):
+            motor[j] = shares[due, j] * limited(torques[due, j], v, m, j) if due >= 0 else 0.0
         for _ in range(SUBSTEPS):
-            loads = np.zeros(5)
+            loads[:] = 0.0
             a1 = acceleration(q, v, motor, m, mode, loads)
             loads[0] = abs(motor[0] - m.rotor[0] * a1[n - 2])
             loads[1] = abs(motor[1] - m.rotor[1] * a1[n - 1] - m.rotor[1] / m.ratio * a1[2])
-            peaks = np.maximum(peaks, loads)
-            v2 = v + 0.5 * h * a1
-            a2 = acceleration(q + 0.5 * h * v, v2, motor, m, mode, loads)
-            v3 = v + 0.5 * h * a2
-            a3 = acceleration(q + 0.5 * h * v2, v3, motor, m, mode, loads)
-            v4 = v + h * a3
-            a4 = acceleration(q + h * v3, v4, motor, m, mode, loads)
-            before = v
-            q, v = q + h * (v + 2 * v2 + 2 * v3 + v4) / 6, v + h * (a1 + 2 * a2 + 2 * a3 + a4) / 6
-            power = motor * (before + v)[n - 2 :] / 2
-            energy += np.maximum(power, 0.0).sum() * h
-            drawn = power + m.heat * motor**2
-            battery += max(drawn.sum(), 0.0) * h if m.bus else np.maximum(drawn, 0.0).sum() * h
+            for i in range(5):
+                peaks[i] = max(peaks[i], loads[i])
+            v2 = moved(v, 0.5 * h, a1)
+            a2 = acceleration(moved(q, 0.5 * h, v), v2, motor, m, mode, loads)
+            v3 = moved(v, 0.5 * h, a2)
+            a3 = acceleration(moved(q, 0.5 * h, v2), v3, motor, m, mode, loads)
+            v4 = moved(v, h, a3)
+            a4 = acceleration(moved(q, h, v3), v4, motor, m, mode, loads)
+            drawn = 0.0
+            for j in range(2):
+                i = n - 2 + j
+                power = motor[j] * (v[i] + h * (a1[i] + 2 * a2[i] + 2 * a3[i] + a4[i]) / 12)
+                energy += max(power, 0.0) * h
+                drawn += power + m.heat[j] * motor[j] ** 2
+                if j == 1 or not m.bus:
+                    battery += max(drawn, 0.0) * h
+                    drawn = 0.0
+            for i in range(n):
+                q[i] += h * (v[i] + 2 * v2[i] + 2 * v3[i] + v4[i]) / 6
+                v[i] += h * (a1[i] + 2 * a2[i] + 2 * a3[i] + a4[i]) / 6
             height = max(height, q[1])
     return np.nan, np.nan, np.nan, peaks
 
 
 def with_inverse_masses(m):
     """With A of hip, knee and foot; with elastic drives, of the motors and the foot."""
+    # Arrays of one layout: for others, all would be compiled again.
+    m = Machine(*(np.array(value, order="C") if isinstance(value, np.ndarray) else value for value in m))
     n = 6 if m.spring.any() else 4
     matrix, _, shank, *_ = bodies(np.zeros(n), m)
+    shank = np.stack(shank)[:, :n]
     inverse, free = np.zeros((n, n)), slice(int(m.guided), n)
     inverse[free, free] = np.linalg.inv(matrix[free, free])
-    foot = np.trace(shank @ inverse[:4, :4] @ shank.T) / 3
+    foot = np.trace(shank @ inverse @ shank.T) / 3
     return m._replace(inverse=np.array([inverse[n - 2, n - 2], inverse[n - 1, n - 1], foot]))
 
 
