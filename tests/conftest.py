@@ -6,6 +6,8 @@ import os
 import pickle
 import shutil
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -16,37 +18,52 @@ from hypothesis import settings
 settings.register_profile("shared_machine", deadline=None)
 settings.load_profile("shared_machine")
 
-TOGETHER = ("tests/cad/check/", "tests/report/", "tests/study/server/")
-"""Folders whose fixtures take so long to make that one process has all tests of a folder."""
+TOGETHER = {
+    "tests/report/": "report",
+    "tests/study/server/": "server",
+    "tests/cad/": "exports",
+    "tests/api/test_outputs.py": "exports",
+    "tests/cli/test_exports.py": "exports",
+    "tests/cli/test_pareto.py": "exports",
+    "tests/docs/test_commands.py": "exports",
+    "tests/study/test_optional_variables.py": "exports",
+}
+"""Folders and files whose products take so long to make that one process has all tests of a name."""
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
-    """With ``--dist loadfile``, keep not only files together but also the folders named above."""
+    """With ``--dist loadfile``, keep not only files together but also what is named above."""
     if config.getvalue("dist") != "loadfile":
         return None
     from xdist.scheduler import LoadFileScheduling
 
     class Folders(LoadFileScheduling):
         def _split_scope(self, nodeid: str) -> str:
-            return next((folder for folder in TOGETHER if nodeid.startswith(folder)), super()._split_scope(nodeid))
+            return next(
+                (name for place, name in TOGETHER.items() if nodeid.startswith(place)), super()._split_scope(nodeid)
+            )
 
     return Folders(config, log)
 
 
 def pytest_configure() -> None:
-    """Keep temporary files in memory where there is room: the disk is waited for a hundred times per study."""
+    """Set what holds for all processes; temporary files are kept in memory where there is room.
+
+    A study waits for the disk a hundred times.
+    """
     os.environ["MUJOCO_GL"] = "disable"  # as the command line does: nothing is drawn with MuJoCo
+    os.environ["PYDANTIC_DISABLE_PLUGINS"] = "__all__"  # likewise; processes of the tests look for none, either
+    gc.set_threshold(20_000)  # to look for unreachable objects more rarely saves 5 percent of all time
     memory = Path("/dev/shm")
     if memory.is_dir() and shutil.disk_usage(memory).free > 8e9:
         os.environ.setdefault("PYTEST_DEBUG_TEMPROOT", str(memory))
 
 
 def pytest_collection_finish() -> None:
-    """Look for unreachable objects more rarely, and never among those of imported modules: 5 percent of all time."""
+    """Never look for unreachable objects among those of imported modules."""
     gc.collect()
     gc.freeze()
-    gc.set_threshold(20_000)
 
 
 @pytest.fixture(scope="session")
@@ -71,12 +88,31 @@ def made_once(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, Callab
     return made
 
 
-@pytest.fixture
-def unchecked(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Exports of this process leave out the checks of the machine, which have tests of their own."""
-    from pareto_monoped.cad import export
+@contextmanager
+def without_checks() -> Iterator[None]:
+    """Exports of this process leave out the checks of the machine, and the solids that nothing but checks looks at."""
+    from pareto_monoped.cad import export, product
 
-    monkeypatch.setattr(export, "run_checks", lambda *_, **__: ())
+    unread: Future[list[Any]] = Future()
+    unread.set_exception(AssertionError("no solids are made for an export without checks"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(export, "run_checks", lambda *_, **__: ())
+        patch.setattr(product, "solid_facts", lambda _: unread)
+        yield
+
+
+@pytest.fixture
+def unchecked() -> Iterator[None]:
+    """Exports of this test are made without the checks of the machine, which have tests of their own."""
+    with without_checks():
+        yield
+
+
+@pytest.fixture(scope="module")
+def unchecked_module() -> Iterator[None]:
+    """The same for the products of a module."""
+    with without_checks():
+        yield
 
 
 @pytest.fixture(scope="session")

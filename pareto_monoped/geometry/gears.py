@@ -251,11 +251,11 @@ class ExternalGear(_Teeth):
 
     def area_mm2(self) -> Numbers:
         """The first of ``moments``."""
-        return _area_mm2(self)
+        return _both_mm(self)[0]
 
     def moments(self) -> Moments:
         """Exact, roots included."""
-        return _round_moments(*_external_mm(self))
+        return _round_moments(*_both_mm(self))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -310,11 +310,11 @@ class InternalGear(_Teeth):
 
     def area_mm2(self) -> Numbers:
         """The first of ``moments``."""
-        return _area_mm2(self)
+        return _both_mm(self)[0]
 
     def moments(self) -> Moments:
         """Exact for the teeth and the tip disc; for the fillets, which make the hole smaller, see there."""
-        return _round_moments(*_internal_mm(self))
+        return _round_moments(*_both_mm(self))
 
 
 def _external_mm(gear: ExternalGear) -> tuple[Numbers, Numbers]:
@@ -331,16 +331,16 @@ def _internal_mm(gear: InternalGear) -> tuple[Numbers, Numbers]:
     )
 
 
-def _area_mm2(gear: ExternalGear | InternalGear) -> Numbers:
-    """Area of a gear, or of the hole of a ring; kept for single gears, which several prisms have in common."""
+def _both_mm(gear: ExternalGear | InternalGear) -> tuple[Numbers, Numbers]:
+    """Area and polar moment of a gear, or of the hole of a ring; kept for single gears, which several prisms share."""
     try:
-        return _remembered_area_mm2(gear)
+        return _remembered_mm(gear)
     except TypeError:  # arrays have no hash
-        return _outline_area_mm2(gear)
+        return _outline_mm(gear)
 
 
-def _outline_area_mm2(gear: ExternalGear | InternalGear) -> Numbers:
-    return (_internal_mm(gear) if isinstance(gear, InternalGear) else _external_mm(gear))[0]
+def _outline_mm(gear: ExternalGear | InternalGear) -> tuple[Numbers, Numbers]:
+    return _internal_mm(gear) if isinstance(gear, InternalGear) else _external_mm(gear)
 
 
-_remembered_area_mm2 = lru_cache(maxsize=1024)(_outline_area_mm2)
+_remembered_mm = lru_cache(maxsize=1024)(_outline_mm)

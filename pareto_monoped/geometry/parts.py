@@ -310,7 +310,8 @@ strong_part = partial(Part, material=MATERIALS.aluminium, grade=ALLOYS["aw_7075_
 steel_part = partial(Part, material=MATERIALS.steel, process="bought")
 
 
-@lru_cache(maxsize=1024)
+# The actuators of a map have some 1,500 parts, which are asked for in the same order for either joint.
+@lru_cache(maxsize=8192)
 def _remembered(part: Part) -> MassProperties:
     """Return the mass properties of a part of plain numbers, computed once: most depend on no link's length."""
     return part._everywhere()

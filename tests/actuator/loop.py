@@ -98,14 +98,13 @@ def allowed_by_iso6336(motor, family, gears, width):
     counts = gears.sun_teeth, gears.planet_teeth, gears.ring_teeth
     sun, planet, ring, distance = teeth.shifted(*counts, float(gears.centre_shift), float(gears.sun_shift))
     worth = 2.0 / sin(ALPHA) ** 2
-    if ring.tip <= ring.base:
+    if sum(counts[::2]) % planets or ring.tip <= ring.base:
         return False
     thinner = max(0.03 * module, 0.017)
     sun_root, planet_root = (
         module * (gear.teeth / 2 + teeth.generated(gear, thinner / module).x - 1.25) for gear in (sun, planet)
     )
     rules = [
-        sum(counts[::2]) % planets == 0,
         module * ring.teeth <= room + 1e-9,
         module * (ring.teeth + 2 * ring.x + 2.5) <= room + 2e-9,
         planet_root - (3.0 + 1.5) >= 1.2 * 2.25 * module - 1e-9,  # needles of 1.5 mm around a pin of 6 mm
@@ -133,7 +132,7 @@ def allowed_by_iso6336(motor, family, gears, width):
         return False
     # The centre of a root's arc, drawn, must lie on its own side of the ring's space.
     root = teeth.root_of(teeth.generated(ring, thinner / module), ring)
-    return root.centre(root.end())[0] * module >= -1e-9
+    return root.centre(root.end)[0] * module >= -1e-9
 
 
 def best_in(motor, family, tenths, settings):

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import pytest
 
@@ -17,13 +18,16 @@ from pareto_monoped.geometry.shapes import Pattern
 from tests.actuator.fit import clashes, overlaps_within, pieces, rings
 
 
+@cache
 def bests(name, rules="paper"):
     """The best actuator of each family in every interval of one motor."""
     found = map_for(name, rules)
-    for entry in found.entries:
-        for family, result in entry.families.items():
-            if result.best is not None:
-                yield build_actuator(found.motor, family, result.best.gears, found.settings)
+    return [
+        build_actuator(found.motor, family, result.best.gears, found.settings)
+        for entry in found.entries
+        for family, result in entry.families.items()
+        if result.best is not None
+    ]
 
 
 @pytest.mark.parametrize("rules", RULE_SETS)
@@ -144,7 +148,7 @@ def test_rings_are_rounded_up_to_a_tenth_that_a_gauge_exists_for(rules):
 
 @pytest.mark.parametrize("name", motor_names())
 def test_interfaces_do_not_depend_on_the_gear_set(name):
-    found = list(bests(name))
+    found = bests(name)
     assert len({actuator.output for actuator in found}) == 1
     assert len({(actuator.family, actuator.mount) for actuator in found}) == len({a.family for a in found})
 

@@ -15,7 +15,7 @@ from pareto_monoped.errors import DesignError, SelectionError, StudyError
 def db(tmp_path_factory):
     """A small study that really jumps."""
     path = tmp_path_factory.mktemp("api") / "s.db"
-    pm.run(pm.Study.define(name="s", evaluations=240, seed=3), path)
+    pm.run(pm.Study.define(name="s", evaluations=120, seed=3), path)
     return path
 
 
@@ -123,7 +123,7 @@ def test_what_a_caller_changes_in_the_trials_stays_with_him(db):
 
 
 def test_a_trial_that_is_not_there(stored):
-    with pytest.raises(SelectionError, match="trial = 9999: must be 0 to 239"):
+    with pytest.raises(SelectionError, match="trial = 9999: must be 0 to 119"):
         stored.design(9999)
 
 

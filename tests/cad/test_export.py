@@ -76,7 +76,7 @@ def test_a_record_cannot_make_force_delete_outside_the_folder(unchecked, actuato
     assert json.loads((folder / "design.json").read_text())["as_built"] == DESIGN.as_dict()
 
 
-def test_a_failed_check_names_the_parts_and_writes_nothing(monkeypatch, actuator_map, calibration, tmp_path):
+def test_a_failed_check_names_the_parts_and_writes_nothing(unchecked, monkeypatch, actuator_map, calibration, tmp_path):
     failed = Check(
         name="no two parts overlap",
         looked_at="",
@@ -108,7 +108,7 @@ def test_bad_requests_are_refused_before_any_work(actuator_map, calibration, tmp
     with pytest.raises(OutputError, match="is a file"):
         export_design(DESIGN, actuator_map, calibration, tmp_path / "file")
     with pytest.raises(DesignError):
-        export_design(DESIGN.replace({"knee_ratio": 14.99}), actuator_map, calibration, tmp_path / "robot")
+        export_design(DESIGN.replace({"knee_ratio": 14.99}), actuator_map, calibration, tmp_path / "robot", formats=())
     with pytest.raises(OutputError, match=r"part name '\.\./x'"):
         safe("../x")
 

@@ -7,7 +7,7 @@ import shutil
 
 import pytest
 
-from pareto_monoped.cad import batch, export
+from pareto_monoped.cad import batch
 from pareto_monoped.cad.jobs import Job, case_job
 from pareto_monoped.cad.records import is_made
 from pareto_monoped.design import PAPER_CASES
@@ -16,12 +16,10 @@ FORMATS = ("dxf", "urdf")
 
 
 @pytest.fixture(scope="module")
-def original(tmp_path_factory) -> Job:
-    """An export of the nominal design; its checks have tests of their own."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(export, "run_checks", lambda *_, **__: ())
-        job = case_job("nominal", folder=tmp_path_factory.mktemp("made") / "robot", formats=FORMATS)
-        batch.run(job)
+def original(unchecked_module, tmp_path_factory) -> Job:
+    """An export of the nominal design."""
+    job = case_job("nominal", folder=tmp_path_factory.mktemp("made") / "robot", formats=FORMATS)
+    batch.run(job)
     return job
 
 
@@ -178,8 +176,7 @@ def test_a_truncated_or_senseless_record_is_not_believed(copy, text):
     assert not is_made(copy)
 
 
-def test_a_stale_export_is_made_again(copy, monkeypatch):
-    monkeypatch.setattr(export, "run_checks", lambda *_, **__: ())
+def test_a_stale_export_is_made_again(copy):
     (copy.folder / "model" / "monoped.urdf").unlink()
     batch.run(dataclasses.replace(copy, force=True))
     assert is_made(copy)

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.cad import batch, export
+from pareto_monoped.cad import batch
 from pareto_monoped.cad.jobs import case_job
 from pareto_monoped.cad.records import is_made, record_job
 from pareto_monoped.errors import InputError
@@ -17,13 +17,11 @@ KNEE_RATIO = 6.15
 
 
 @pytest.fixture(scope="module")
-def rated(tmp_path_factory):
-    """Case A with a knee whose gearbox has another ratio; the checks have tests of their own."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(export, "run_checks", lambda *_, **__: ())
-        job = case_job("A", rules="iso6336", folder=tmp_path_factory.mktemp("rated") / "robot", formats=("dxf",))
-        job = dataclasses.replace(job, design=job.design.replace({"knee_ratio": KNEE_RATIO}))
-        batch.run(job)
+def rated(unchecked_module, tmp_path_factory):
+    """Case A with a knee whose gearbox has another ratio."""
+    job = case_job("A", rules="iso6336", folder=tmp_path_factory.mktemp("rated") / "robot", formats=("dxf",))
+    job = dataclasses.replace(job, design=job.design.replace({"knee_ratio": KNEE_RATIO}))
+    batch.run(job)
     return job
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import pytest
 
-from pareto_monoped.cad import batch, export, jobs
+from pareto_monoped.cad import batch, jobs
 from pareto_monoped.cad.records import is_made
 from pareto_monoped.errors import CheckError, OutputError
 
@@ -19,12 +19,7 @@ def contents(folder):
     return {str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
-@pytest.fixture(scope="module", autouse=True)
-def quick():
-    """Leave out the checks, which have tests of their own."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(export, "run_checks", lambda *_, **__: ())
-        yield
+pytestmark = pytest.mark.usefixtures("unchecked_module")
 
 
 @pytest.fixture(scope="module")

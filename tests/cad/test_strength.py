@@ -118,7 +118,7 @@ def test_the_record_makes_the_same_job_again(gentle, tmp_path):
 
 
 @pytest.fixture
-def strength_alone(monkeypatch):
+def strength_alone(unchecked, monkeypatch):
     """Exports of this process check nothing but strength, and that where they are asked to."""
     monkeypatch.setattr(
         export, "run_checks", lambda *_, factors, **__: () if factors is None else (strength.check_strength(factors),)

@@ -15,6 +15,7 @@ from rich.console import Console
 from pareto_monoped.campaign.coordinator import standings_of
 from pareto_monoped.campaign.folder import places_of
 from pareto_monoped.campaign.grid import load_campaign
+from pareto_monoped.cli import _run as run
 from pareto_monoped.cli import cli
 from pareto_monoped.cli.campaign import _rows, clock, shortened
 from pareto_monoped.storage.reader import read_study
@@ -50,10 +51,11 @@ def test_a_failing_study_is_told_in_one_line_and_by_the_exit_code(done):
     assert "grid.toml: 4 studies, 2 finished, 2 failed" in lines
 
 
-def test_a_motor_file_is_named_in_quotes_also_where_a_key_of_it_is_wrong(tmp_path):
+def test_a_motor_file_is_named_in_quotes_also_where_a_key_of_it_is_wrong(tmp_path, capsys):
     (tmp_path / "bad.toml").write_text('name = "bad"\n')
     written(tmp_path, 'motors = ["bad.toml"]', SMALL)
-    (line,) = [line for line in command(tmp_path).stderr.splitlines() if line.startswith("error: ")]
+    assert run(["campaign", str(tmp_path / "grid.toml")]) == 1
+    (line,) = [line for line in capsys.readouterr().err.splitlines() if line.startswith("error: ")]
     assert line.startswith(f"error: grid: motor file '{tmp_path}/bad.toml': ")
 
 
@@ -113,10 +115,10 @@ def test_the_table_at_the_end_says_the_time_that_is_stored(done):
     assert len(times[0]) == 2
 
 
-def test_json_is_a_line_per_generation_and_per_study(tmp_path):
+def test_json_is_a_line_per_generation_and_per_study(tmp_path, capsys):
     written(tmp_path, "seeds = [1]", SMALL.replace("40", "20"))
-    ran = command(tmp_path, "--json", "--folder", "other")
-    events = [json.loads(line) for line in ran.stdout.splitlines()]
+    assert run(["campaign", str(tmp_path / "grid.toml"), "--json", "--folder", str(tmp_path / "other")]) == 0
+    events = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     of_one = [event for event in events if "study" in event]
     stored = [event["evaluations"] for event in of_one if event["event"] == "generation" and event["per_second"]]
     assert stored == [10, 20]

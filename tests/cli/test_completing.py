@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from pareto_monoped.cli import _run as cli
 from tests.study.support import made_database
 from tests.test_architecture import SLOW
 
@@ -21,23 +22,21 @@ ENVIRONMENT = os.environ | {"PYTHONPATH": str(ROOT)}
 PROGRAM = "import sys; from pareto_monoped.cli import main; sys.argv = ['pareto-monoped']; main()"
 
 
-def completed(line, *, after=""):
-    """What may stand in place of the last word of a line, as bash is told: kind,value."""
-    words = line.split(" ")
-    run = subprocess.run(
-        [sys.executable, "-c", f"{PROGRAM}{after}"],
-        env=ENVIRONMENT
-        | {
-            "_PARETO_MONOPED_COMPLETE": "bash_complete",
-            "COMP_WORDS": line,
-            "COMP_CWORD": str(len(words) - 1),
-        },
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert run.stderr == ""
-    return run.stdout.split()
+@pytest.fixture
+def completed(monkeypatch, capsys):
+    """A function: what may stand in place of the last word of a line, as bash is told: kind,value."""
+
+    def asked(line):
+        monkeypatch.setenv("_PARETO_MONOPED_COMPLETE", "bash_complete")
+        monkeypatch.setenv("COMP_WORDS", line)
+        monkeypatch.setenv("COMP_CWORD", str(len(line.split(" ")) - 1))
+        with pytest.raises(SystemExit):
+            cli([])
+        out, err = capsys.readouterr()
+        assert err == ""
+        return out.split()
+
+    return asked
 
 
 @pytest.mark.parametrize(
@@ -57,7 +56,7 @@ def completed(line, *, after=""):
         ("pareto-monoped front s", ["file,s"]),
     ],
 )
-def test_names_are_completed(line, offered):
+def test_names_are_completed(completed, line, offered):
     assert completed(line) == offered
 
 
@@ -86,12 +85,12 @@ def db(tmp_path):
 
 
 @pytest.mark.parametrize("command", ["pick", "export", "robust"])
-def test_numbers_of_trials_are_completed_from_the_front(command, db):
+def test_numbers_of_trials_are_completed_from_the_front(completed, command, db):
     assert completed(f"pareto-monoped {command} {db} --trial ") == ["plain,4", "plain,0", "plain,3"]
     assert completed(f"pareto-monoped {command} {db} --trial 3") == ["plain,3"]
 
 
-def test_trials_of_what_is_no_study_are_not_completed(db, tmp_path):
+def test_trials_of_what_is_no_study_are_not_completed(completed, db, tmp_path):
     (tmp_path / "no.db").write_text("nothing")
     with sqlite3.connect(db) as connection:
         connection.execute("UPDATE monoped_front SET trials = '[4'")

@@ -71,6 +71,11 @@ def searches() -> dict[str, tuple[Path, str]]:
     return {}
 
 
+LESS = {
+    "export": ("--formats", "dxf"),  # its files are those that other tests look at; here are its parts and its checks
+    "run studies/quick.toml": ("--evaluations", "400"),  # half of them: of a search, only words are compared
+}
+"""Commands that are run with further words, since they take long as they are shown."""
 LONG = {"studies.md"}
 """Pages whose commands take as long as those of all others: a campaign over motors, with its report."""
 
@@ -101,8 +106,7 @@ def test_commands_of_the_page_run_and_print_what_it_shows(
             folder, printed = searches[command]
             shutil.copytree(folder, "studies", dirs_exist_ok=True)
         else:
-            # The files of an export are those that other tests look at; here are its parts and its checks.
-            code = cli([*words, "--formats", "dxf"] if words[0] == "export" else words)
+            code = cli([*words, *LESS.get(" ".join(words[:2]), LESS.get(words[0], ()))])
             printed, said = capsys.readouterr()
             assert code == 0, f"{command}: {said}"
         if place == 0 and words[0] == "run":

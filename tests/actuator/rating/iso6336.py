@@ -170,12 +170,13 @@ def springs(misalignment_um, stiffness, mean, crowning_um, count=4001):
     gap = misalignment_um * (1.0 - place) / 2.0 + crowning_um * place**2
     tributary = np.ones(count)
     tributary[[0, -1]] = 0.5
+    tributary /= tributary.sum()
 
     def pressed(approach):
         return stiffness * np.maximum(approach - gap, 0.0)
 
     most = gap.max() + 1.1 * mean / stiffness
-    together = bisect(lambda approach: np.average(pressed(approach), weights=tributary) - mean, gap.min(), most)
+    together = bisect(lambda approach: tributary @ pressed(approach) - mean, gap.min(), most)
     loads = pressed(together)
     k = int(np.argmax(loads))
     if loads[k] <= loads[max(k - 1, 0)] or not 0 < k < count - 1:

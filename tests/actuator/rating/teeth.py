@@ -6,7 +6,7 @@ allows. Gears have module 1.
 """
 
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, cached_property
 from math import atan2, cos, hypot, pi, sin, sqrt, tan
 
 ALPHA = pi / 9.0
@@ -186,19 +186,20 @@ class Arc:
         long = hypot(x1 - x0, y1 - y0) / RACK_FILLET
         return x - (y1 - y0) / long, y + (x1 - x0) / long
 
+    @cached_property
     def end(self):
         """Radius at which it touches the flank."""
         low = max(self.gear.base + 1e-4, self.root - 2.0)
         return bisect(lambda r: hypot(*self.centre(r)) - (self.root - RACK_FILLET), low, self.root)
 
     def reach(self):
-        centre, end = self.centre(self.end()), self.flank(self.end())
+        centre, end = self.centre(self.end), self.flank(self.end)
         turn = pi / self.gear.teeth
         return atan2(*centre) - turn, atan2(end[0] - centre[0], end[1] - centre[1]) - turn
 
     def point(self, turned):
         """At an angle around the arc's centre; the tooth on the right has been turned onto the y axis."""
-        x, y = self.centre(self.end())
+        x, y = self.centre(self.end)
         angle, far = atan2(x, y) - pi / self.gear.teeth, hypot(x, y)
         return far * sin(angle) + RACK_FILLET * sin(turned), far * cos(angle) + RACK_FILLET * cos(turned)
 
@@ -248,6 +249,7 @@ def thinning(teeth, module, backlash_mm):
     return backlash_mm + next(tolerance for largest, tolerance in THINNER if teeth * module <= largest)
 
 
+@cache  # searches ask for a gear again with each other gear, number of planets and face width
 def generated(gear, thinner):
     """The gear whose teeth are thinner (ring: whose spaces are wider) on the reference circle, by shift alone."""
     change = thinner if gear.internal else -thinner

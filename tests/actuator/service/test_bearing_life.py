@@ -10,10 +10,9 @@ from hypothesis import strategies as st
 from pareto_monoped.actuator.actuator import build_actuator
 from pareto_monoped.actuator.assumptions import default_service
 from pareto_monoped.actuator.motors import load_motor, motor_names
-from pareto_monoped.actuator.search import build_map, map_for
+from pareto_monoped.actuator.search import map_for, map_of
 from pareto_monoped.actuator.service.loads import row_load
 from pareto_monoped.actuator.service.sheet import service_sheet
-from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.design import RULE_SETS
 
 SERVICE = default_service()
@@ -114,7 +113,7 @@ def test_the_hip_rests_in_two_bearings(vt_map):
 @pytest.mark.parametrize("rules", RULE_SETS)
 @pytest.mark.parametrize("name", motor_names())
 def test_every_winner_of_every_motor_has_a_sheet_of_finite_numbers(name, rules):
-    actuator_map = build_map(load_motor(name), ActuatorSettings(rules=rules))
+    actuator_map = map_of(load_motor(name), rules)
     for entry in actuator_map.entries:
         if entry.actuator is not None:
             sheet = service_sheet(entry.actuator, actuator_map.settings)

@@ -31,6 +31,18 @@ PLATE = Part(
 )
 
 
+@pytest.fixture(scope="module", autouse=True)
+def own_kernel():
+    """The kernel that dies here is not the one that has made the solids of other tests."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(kernel, "_kernel", None)
+        patch.setattr(kernel, "_asked", [])
+        yield
+        if kernel._kernel is not None:
+            kernel._kernel.kill()
+            kernel._kernel.shutdown()
+
+
 def program():
     """The kernel's process."""
     (line,) = kernel._process()._lines
