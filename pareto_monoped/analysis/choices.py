@@ -1,22 +1,45 @@
-"""What choosing by mechanical energy costs at the battery; competitors of the paper's design; numbered trials."""
+"""Designs chosen from stored studies, audited before they are the answer; what choosing by mechanical energy costs."""
 
 import contextlib
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
+from pareto_monoped.analysis.at_bounds import front_alone
+from pareto_monoped.analysis.remarks import refuse_empty
+from pareto_monoped.analysis.robustness import refuse_other_jumps
+from pareto_monoped.compute.chunks import cores
 from pareto_monoped.design import PAPER_CASES
-from pareto_monoped.errors import SelectionError
+from pareto_monoped.errors import ParetoMonopedError, SelectionError
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
-from pareto_monoped.pareto.pick import pick
-from pareto_monoped.pareto.selectors import Among, MinHeight, Selector, Trial
-from pareto_monoped.storage.reader import StudyData
+from pareto_monoped.pareto.pick import Pick, condition_on, needs_front_only, pick
+from pareto_monoped.pareto.selectors import (
+    Among,
+    Compromise,
+    Condition,
+    Knee,
+    MaxEnergy,
+    MinHeight,
+    Selector,
+    Trial,
+    column,
+    required_fits,
+)
+from pareto_monoped.storage.front_reader import least_stored, read_front
+from pareto_monoped.storage.place import StudyPlace, storage_of
+from pareto_monoped.storage.reader import StudyData, read_study
+from pareto_monoped.storage.store import Store
+from pareto_monoped.study.audits import audit_trials
+from pareto_monoped.study.simulator import stored_simulator
 
-HEIGHT_AND_BATTERY = Objectives(names=("height_m", "electrical_energy_j"))
+BATTERY = "electrical_energy_j"
+HEIGHT_AND_BATTERY = Objectives(names=("height_m", BATTERY))
 """What the owner of a robot pays for, in place of the paper's mechanical energy."""
 
 WORDS = {"energy_j": "mechanical energy", "electrical_energy_j": "battery energy"}
@@ -114,8 +137,8 @@ class Competitor:
 _COMPETED = tuple(one.name for one in fields(Competitor) if one.name != "label")
 
 
-def headline(data: StudyData, knee_trial: int) -> tuple[Competitor, ...]:
-    """Return the paper's design, published and simulated here, then the front's: as high, if any, and at the knee."""
+def headline(data: StudyData, chosen_trial: int) -> tuple[Competitor, ...]:
+    """Return the paper's design, published and simulated here, then the front's: as high, if any, and that chosen."""
     several = len(data.study.kits) > 1
     evaluations = Evaluator(data.case_kit, data.calibration)(CASE.design.as_array())
     simulated = Competitor(
@@ -127,7 +150,7 @@ def headline(data: StudyData, knee_trial: int) -> tuple[Competitor, ...]:
     with contextlib.suppress(SelectionError):
         wanted = MinHeight(height_m=simulated.height_m)
         chosen.append(("front: at least that height", pick(front, wanted, objectives).trial))
-    chosen.append(("front: knee", knee_trial))
+    chosen.append(("front: exported", chosen_trial))
     jumps = front.set_index("trial")
     return (
         Competitor(label=f"paper's Case {CASE.name}, as published", height_m=CASE.height_m, energy_j=CASE.energy_j),
@@ -142,24 +165,150 @@ def headline(data: StudyData, knee_trial: int) -> tuple[Competitor, ...]:
     )
 
 
-def numbered(selector: Selector | None) -> int | None:
-    """Return the number of the trial that a selector names; None if it chooses in another way."""
-    chooser = selector.chooser if isinstance(selector, Among) else selector
-    return chooser.number if isinstance(chooser, Trial) else None
-
-
-def with_numbered(data: StudyData, front: pd.DataFrame, selector: Selector | None) -> pd.DataFrame:
-    """Return the front, and after it the trial that a selector names, if it is feasible and has not failed an audit."""
-    number = numbered(selector)
-    if number is None or (front["trial"] == number).any() or number in data.ill_conditioned:
-        return front
-    rows = data.trials[(data.trials["trial"] == number) & (data.trials["state"] == "feasible")]
-    return pd.concat([front, rows], ignore_index=True) if len(rows) else front
-
-
 def better_than(rows: pd.DataFrame, trial: int, objectives: Objectives) -> list[int]:
     """Return the trials that dominate one of them: no worse in any objective, and better in one."""
     loss = objectives.minimised(rows[list(objectives.names)].to_numpy(dtype=np.float64))
     own = loss[np.flatnonzero(rows["trial"] == trial)[0]]
     found = (loss <= own).all(axis=1) & (loss < own).any(axis=1)
     return [int(number) for number in rows["trial"][found]]
+
+
+DEAR = 1.5
+"""From how many times the least battery energy stored for at least its height on a design is marked. Our own choice:
+alternatives are worth a look at 2 percent, and what a search leaves unfound is a few percent; half as much again is
+neither."""
+
+
+def is_dear(rows: pd.DataFrame, studies: Sequence[StudyData]) -> NDArray[np.bool_]:
+    """Return which designs take over ``DEAR`` times the least battery energy stored for their heights, shape (n,)."""
+    sound = [data.sound for data in studies]
+    height, energy = (np.concatenate([column(one, name) for one in sound]) for name in ("height_m", BATTERY))
+    known = np.isfinite(height) & np.isfinite(energy)
+    order = np.argsort(height[known])
+    # From each height on, the least of all that jump higher.
+    heights, least = height[known][order], np.minimum.accumulate(energy[known][order][::-1])[::-1]
+    place = np.searchsorted(heights, column(rows, "height_m"))
+    reached = place < len(heights)
+    limits = np.full(len(rows), np.inf)
+    limits[reached] = DEAR * least[place[reached]]
+    return np.asarray(column(rows, BATTERY) > limits)
+
+
+def dear_words(db: StudyPlace, row: "pd.Series[Any]") -> str:
+    """Return the sentence that marks a trial that takes much more from the battery than another; empty for others."""
+    height_m, energy_j = float(row["height_m"]), float(row.get(BATTERY, math.nan))
+    if not (math.isfinite(height_m) and math.isfinite(energy_j)):
+        return ""
+    least_j = least_stored(db, BATTERY, height_m)
+    if least_j is None or least_j <= 0.0 or energy_j <= DEAR * least_j:
+        return ""
+    return (
+        f"dear at the battery: takes {energy_j:.2f} J from it, {energy_j / least_j:.1f} times the least that is stored "
+        f"for this height, {least_j:.2f} J; --min-height {height_m - 0.0005:.3f} --least {BATTERY} picks that"
+    )
+
+
+def default_pick(data: StudyData, studies: Sequence[StudyData]) -> Pick:
+    """Return the design to begin with: the knee, of three objectives the compromise, that is not dear at the battery.
+
+    What is stored for a height is looked for in all ``studies``, such as those of one page.
+    """
+    objectives, rows = data.study.objectives, data.sound
+    chooser = Knee() if len(objectives.names) == 2 else Compromise(values=(1.0,) * len(objectives.names))
+    able, plain = ~is_dear(rows, studies), pick(rows, chooser, objectives)
+    picked = pick(rows, chooser, objectives, able) if able.any() else plain
+    if picked.trial == plain.trial:
+        return plain
+    return replace(picked, why=f"{picked.why}, of the designs below {DEAR:g} times the least battery energy")
+
+
+Notify = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chosen:
+    """A design of a study, and the front that it was chosen on."""
+
+    data: StudyData  #: the study; of one whose kept front is enough, its other trials are not read
+    picked: Pick
+    rows: pd.DataFrame  #: the front of the designs that meet the conditions, and the chosen one, if it is behind
+
+
+def numbered(selector: Selector | None) -> int | None:
+    """Return the number of the trial that a selector names; None if it chooses in another way."""
+    chooser = selector.chooser if isinstance(selector, Among) else selector
+    return chooser.number if isinstance(chooser, Trial) else None
+
+
+def choose_of(db: StudyPlace, selector: Selector, *, notify: Notify) -> Chosen:
+    """Choose a design of the study in a database, see ``choose``; read its front alone where that is enough."""
+    kept, number = read_front(db), numbered(selector)
+    enough = needs_front_only(selector, kept.study.objectives) and len(kept.rows) > 0
+    if enough and (number is None or (kept.rows["trial"] == number).any()):
+        return _chosen(front_alone(kept), selector, kept.study.objectives)
+    return choose(read_study(db), selector, notify=notify)
+
+
+def choose(data: StudyData, selector: Selector, objectives: Objectives | None = None, *, notify: Notify) -> Chosen:
+    """Choose a design of a study. A design without an audit gets one first; if it fails, the next best is chosen.
+
+    Raises:
+        SelectionError: there is no feasible design, none fits, or the selector does not suit the objectives.
+    """
+    goals = objectives or data.study.objectives
+    if numbered(selector) is None:
+        data = settled(data, lambda known: [_chosen(known, selector, goals).picked.trial], notify=notify)
+    return _chosen(data, selector, goals)
+
+
+def _chosen(data: StudyData, selector: Selector, objectives: Objectives) -> Chosen:
+    rows = data.sound
+    refuse_empty(rows, data)
+    picked = pick(rows, selector, objectives)
+    front = data.front(objectives=objectives, conditions=picked.conditions)
+    if not (front["trial"] == picked.trial).any():
+        front = pd.concat([front, rows[rows["trial"] == picked.trial]], ignore_index=True)
+    return Chosen(data=data, picked=picked, rows=front)
+
+
+def settled_front(db: StudyPlace, conditions: Sequence[Condition | MaxEnergy], *, notify: Notify) -> pd.DataFrame:
+    """Return the front of the designs of a study that meet conditions, all of them audited; refuse an empty one."""
+    data = read_study(db)
+    objectives = data.study.objectives
+    wanted = [condition_on(one, objectives) for one in conditions]
+    refuse_empty(data.sound, data)
+    required_fits(data.sound, wanted, objectives)
+    data = settled(data, lambda known: known.front(conditions=wanted)["trial"].tolist(), notify=notify)
+    required_fits(data.sound, wanted, objectives)
+    return data.front(conditions=wanted)
+
+
+def settled(data: StudyData, wanted: Callable[[StudyData], list[int]], *, notify: Notify) -> StudyData:
+    """Return a study with audits of all trials that are ``wanted`` of it; those that fail make others wanted.
+
+    The audits are stored. A study that has not ended is left as it is, because its audit comes at its end. Where an
+    audit cannot be made or stored, ``notify`` says so.
+    """
+    if not (data.meta.finished and data.study.audit):
+        return data
+    while fresh := sorted(set(wanted(data)) - set(data.audits["trial"])):
+        try:
+            data = _audited(data, fresh)
+        except ParetoMonopedError as error:
+            notify(f"not audited: {', '.join(f'trial {trial}' for trial in fresh)} ({error})")
+            break
+    return data
+
+
+def _audited(data: StudyData, trials: list[int]) -> StudyData:
+    with storage_of(data.db).locked():
+        # Somebody may have asked for the same since the study was read.
+        now = read_study(data.db)
+        rows = now.trials[now.trials["trial"].isin(set(trials) - set(now.audits["trial"]))]
+        if len(rows):
+            simulator = stored_simulator(now, workers=cores())
+            refuse_other_jumps(now, rows, simulator.evaluator)
+            with Store(now.db, now.study) as store:
+                audit_trials(now, rows, store, simulator)
+            now = read_study(data.db)
+    return replace(data, audits=now.audits)

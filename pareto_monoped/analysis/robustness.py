@@ -15,7 +15,7 @@ from pareto_monoped.design import NAMES
 from pareto_monoped.errors import InputError, SelectionError, StudyError, complaint
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.measures import MEASURES, STATISTICS
-from pareto_monoped.pareto.front import front_mask
+from pareto_monoped.pareto.pick import front_within
 from pareto_monoped.storage.extra_rows import ROBUSTNESS, Stored, read_robustness
 from pareto_monoped.storage.meta import strict_json
 from pareto_monoped.storage.place import StudyPlace, storage_of
@@ -192,5 +192,5 @@ def robust_front(data: StudyData, trials: RobustTrials) -> pd.DataFrame:
             f"robust front: has 0 designs, because none of the {len(rows)} is feasible and well-conditioned as "
             "designed; simulate others with 'robust'"
         )
-    mask = front_mask(rows[list(objectives.names)].to_numpy(dtype=np.float64), objectives, able)
+    mask = front_within(rows, (), objectives, able)
     return rows[mask].sort_values(objectives.names[0], kind="stable", ignore_index=True)

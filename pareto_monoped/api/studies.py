@@ -1,5 +1,6 @@
 """Studies in scripts: what a database holds, and designs chosen from it."""
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -44,6 +45,8 @@ class Picked:
     design: Design  #: its variables
     row: "Series[Any]"  #: its row of ``StoredStudy.trials``
     why: str  #: the reason in one sentence
+    #: where it takes half as much again from the battery as the least that is stored for its height, a sentence on that
+    dear: str = ""
 
     def __repr__(self) -> str:
         """Return one line: the trial and the reason."""
@@ -84,20 +87,41 @@ class StoredStudy:
         """Whether the study has ended; else it can be resumed."""
         return self.data.meta.finished
 
-    def front(self, objectives: Sequence[str] | None = None, *, include_ill_conditioned: bool = False) -> "DataFrame":
+    def front(
+        self,
+        objectives: Sequence[str] | None = None,
+        *,
+        min_height_m: float | None = None,
+        max_energy_j: float | None = None,
+        at_least: Mapping[str, float] | None = None,
+        at_most: Mapping[str, float] | None = None,
+        include_ill_conditioned: bool = False,
+    ) -> "DataFrame":
         """Return the non-dominated feasible trials by the first objective, from its least value to its greatest.
+
+        With conditions it is the front of the trials that meet them, which is empty if none does. The audit has not
+        seen all of these, nor all of a front under other objectives.
 
         Args:
             objectives: two or three measures, instead of the study's own.
+            min_height_m: condition: a jump of at least this height.
+            max_energy_j: condition: at most this energy.
+            at_least: conditions: name of a measure or variable -> least value, in its stored unit.
+            at_most: conditions: name of a measure or variable -> greatest value.
             include_ill_conditioned: whether designs may be on it whose jump steps and rounding decide.
 
         Raises:
             StudyError: an unknown measure, one without a direction, or not two or three of them.
+            SelectionError: an unknown name in a condition.
         """
+        from pareto_monoped.pareto.pick import condition_on
+
         if not isinstance(include_ill_conditioned, bool):
             name = "include_ill_conditioned"
             raise StudyError(complaint(name, include_ill_conditioned, "True or False", "give one"))
-        return self.data.front(include_ill_conditioned, self._objectives(objectives))
+        chosen = self._objectives(objectives) or self.study.objectives
+        given = _conditions(min_height_m, max_energy_j, at_least, at_most)
+        return self.data.front(include_ill_conditioned, chosen, [condition_on(one, chosen) for one in given])
 
     def pick(
         self,
@@ -111,12 +135,15 @@ class StoredStudy:
         weights: Sequence[float] | None = None,
         compromise: Sequence[float] | None = None,
         nearest: Mapping[str, float] | None = None,
+        least: str | None = None,
+        most: str | None = None,
         objectives: Sequence[str] | None = None,
     ) -> Picked:
-        """Pick one design from the front; the command ``pick`` with the same words chooses the same.
+        """Pick one design; the command ``pick`` with the same words chooses the same.
 
-        Conditions combine with each other and with one way to choose. Without a way, the best design that meets the
-        conditions is taken.
+        Conditions make the front: that of the designs that meet them. One way to choose takes a design from it, and
+        without a way the best one is taken. A design that the audit at the end of the study has not seen gets its
+        audit first, which the database keeps; if it fails, the next best design is taken.
 
         Args:
             by: the ``knee``, or the design of the best ``tradeoff``.
@@ -128,6 +155,8 @@ class StoredStudy:
             weights: the best weighted sum of the scaled objectives, a weight for each.
             compromise: the nearest to the best of every objective, a weight for each.
             nearest: the nearest to a wished-for point, measure -> value.
+            least: the least of this measure or variable, whether or not it is an objective.
+            most: the most of this measure or variable.
             objectives: of the front, instead of the study's own.
 
         Raises:
@@ -139,20 +168,20 @@ class StoredStudy:
             >>> pm.load_study("light.db").pick(min_height_m=0.7, at_most={"mass_kg": 6.0}).design.start_height_m
             0.5
         """
-        from pareto_monoped.analysis.remarks import refuse_empty
-        from pareto_monoped.pareto.pick import pick
+        from pareto_monoped.analysis.choices import choose, dear_words
 
         chosen = self._objectives(objectives) or self.study.objectives
-        front = self.data.front(objectives=chosen)
-        ways = _ways(by, trial, weights, compromise, nearest)
+        ways = _ways(by, trial, weights, compromise, nearest, least, most)
         conditions = _conditions(min_height_m, max_energy_j, at_least, at_most)
         if not ways and not conditions:
             raise SelectionError(
                 "pick: nothing is asked for; give by='knee', or min_height_m, or one of the other arguments"
             )
-        refuse_empty(front, self.data)
-        found = pick(front, selectors.Among(conditions=conditions, chooser=ways[0] if ways else None), chosen)
-        return Picked(trial=found.trial, design=self.design(found.trial), row=self._row(found.trial), why=found.why)
+        wanted = selectors.Among(conditions=conditions, chooser=ways[0] if ways else None)
+        found = choose(self.data, wanted, chosen, notify=warnings.warn).picked
+        row = self._row(found.trial)
+        dear = dear_words(self.path, row)
+        return Picked(trial=found.trial, design=self.design(found.trial), row=row, why=found.why, dear=dear)
 
     def design(self, trial: int) -> Design:
         """Return the design of a trial.
@@ -304,6 +333,8 @@ def _ways(
     weights: Sequence[float] | None,
     compromise: Sequence[float] | None,
     nearest: Mapping[str, float] | None,
+    least: str | None,
+    most: str | None,
 ) -> list[selectors.Chooser]:
     """Return the ways to choose that are asked for; more than one, or an unknown one, is a ``SelectionError``."""
     ways: list[selectors.Chooser] = []
@@ -321,6 +352,9 @@ def _ways(
         if not (wish := _known("nearest", nearest)):
             raise SelectionError("nearest: names no measure; give one, such as {'height_m': 1.0}")
         ways.append(selectors.Nearest(wish=wish))
+    for what, name in (("least", least), ("most", most)):
+        if name is not None:
+            ways.append(selectors.Extreme(name=_known_name(what, name), most=what == "most"))
     if len(ways) > 1:
         raise SelectionError(f"ways to choose = {len(ways)}: must be at most 1, with any conditions; drop the others")
     return ways
@@ -349,7 +383,14 @@ def _known(what: str, values: Any) -> dict[str, float]:
     """Return numbers of measures and variables; raise ``InputError``, or ``SelectionError`` for an unknown name."""
     numbers = table_of(what, values)
     for name in numbers:
-        if name not in selectors.CONDITION_NAMES and not is_own(name):
-            cure = near_measures(name, selectors.CONDITION_NAMES)
-            raise SelectionError(f"{what} = {name!r}: must be a measure or a variable; {cure}")
+        _known_name(what, name)
     return numbers
+
+
+def _known_name(what: str, name: Any) -> str:
+    if not isinstance(name, str):
+        raise SelectionError(complaint(what, name, "the name of a measure or a variable", "give one"))
+    if name not in selectors.CONDITION_NAMES and not is_own(name):
+        cure = near_measures(name, selectors.CONDITION_NAMES)
+        raise SelectionError(f"{what} = {name!r}: must be a measure or a variable; {cure}")
+    return name

@@ -28,7 +28,7 @@ from pareto_monoped.campaign.results import (
     spread_of,
 )
 from pareto_monoped.measures import Measure, measure
-from pareto_monoped.report.page import asset, embedded_json, policy
+from pareto_monoped.report.page import asset, embedded_json, plotly, policy
 from pareto_monoped.report.quantities import label_of, quantities_of
 from pareto_monoped.report.tables import safe
 
@@ -189,7 +189,7 @@ def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
     own = "\n".join([*(asset(f"{name}.js") for name in SCRIPTS), _own("campaign.js")])
     script = f"(() => {{\n'use strict';\n{own}\n}})();\n"
     return Template(_own("campaign.html")).substitute(
-        policy=policy(script),
+        policy=policy(plotly(), script),
         title=safe(campaign.name),
         style=asset("style.css") + asset("print.css") + _own("campaign.css"),
         description=f'<p class="small">{safe(campaign.description)}</p>' if campaign.description else "",
@@ -200,6 +200,7 @@ def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
         studies=studies_table(campaign, results),
         version=safe(__version__),
         payload=embedded_json(_payload(sections)),
+        plotly=plotly(),
         script=script,
     )
 

@@ -48,7 +48,7 @@ class Result:
         """Objectives of the knee of the front, shape (m,); NaN without a front."""
         if not len(self.front):
             return np.full(len(self.objectives.names), np.nan)
-        return np.asarray(self.front[int(np.argmax(knee(self.front, self.objectives).score))])
+        return np.asarray(self.front[int(np.argmax(knee(self.front, self.front, self.objectives).score))])
 
     @property
     def most(self) -> float:

@@ -119,16 +119,15 @@ def export(
             jobs = front_jobs(data, every=every, **asked)
             _many([_without(dropped, job) for job in jobs], workers or cores(), place)
         else:
-            from pareto_monoped.analysis.choices import with_numbered
-            from pareto_monoped.pareto.pick import pick
+            from pareto_monoped.analysis.choices import choose, dear_words
 
             study, wanted = _given(db), required(selector)
-            data = _read(study)
-            rows = with_numbered(data, data.front(), wanted)
-            refuse_empty(rows, data)
-            picked = pick(rows, wanted, data.study.objectives)
-            _note(wrapped(picked.why))
-            _one(_without(dropped, trial_job(data, picked.trial, **asked, **angles)))
+            chosen = choose(_read(study), wanted, notify=note)
+            _note(wrapped(chosen.picked.why))
+            row = chosen.rows[chosen.rows["trial"] == chosen.picked.trial].iloc[0]
+            if dear := dear_words(study, row):
+                note(dear)
+            _one(_without(dropped, trial_job(chosen.data, chosen.picked.trial, **asked, **angles)))
 
 
 def _read(db: StudyPlace) -> "StudyData":

@@ -11,7 +11,7 @@ import click
 
 from pareto_monoped.cli import options
 from pareto_monoped.cli.options import CSV_FILE, DATABASE, force_option
-from pareto_monoped.cli.selection import required, selector_options
+from pareto_monoped.cli.selection import condition_options, required, selector_options
 from pareto_monoped.cli.terminal import WIDTH, echo, note, wrapped
 from pareto_monoped.design import VARIABLES, Variable, in_use
 from pareto_monoped.storage.place import StudyPlace
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pareto_monoped.analysis.robustness import RobustTrials
     from pareto_monoped.definition.study import Study
     from pareto_monoped.pareto.objectives import Objectives
-    from pareto_monoped.pareto.selectors import Selector
+    from pareto_monoped.pareto.selectors import Condition, MaxEnergy, Selector
     from pareto_monoped.storage.reader import StudyData
 
 
@@ -45,6 +45,7 @@ def _motor_columns(study: "Study") -> tuple[str, ...]:
 
 @click.command()
 @click.argument("db", type=DATABASE)
+@condition_options
 @click.option("--json", "as_json", is_flag=True, help="Print the designs as JSON.")
 @click.option("--csv", "csv_file", type=CSV_FILE, metavar="FILE.csv", help="Write the designs to a CSV file.")
 @force_option
@@ -60,6 +61,7 @@ def _motor_columns(study: "Study") -> tuple[str, ...]:
 )
 def front(
     db: StudyPlace,
+    conditions: "tuple[Condition | MaxEnergy, ...]",
     as_json: bool,
     csv_file: Path | None,
     force: bool,
@@ -71,15 +73,17 @@ def front(
 
     They stand by their first objective, from the least value to the greatest.
 
-    Under other objectives than its own, a study's front is what its trials happen to hold: they were not searched for,
-    and the audit has not seen all of them.
+    With conditions it is the front of the designs that meet them, and under other objectives than the study's own it is
+    what the trials happen to hold: they were not searched for, and the audit has not seen all of them.
     """
     from pareto_monoped.analysis.remarks import why_no_front
+    from pareto_monoped.pareto.pick import condition_on
+    from pareto_monoped.pareto.selectors import required_fits
     from pareto_monoped.storage.front_reader import read_front
     from pareto_monoped.storage.kept_front import foreign_note
     from pareto_monoped.storage.reader import read_study
 
-    if objectives is None and not include_all:
+    if objectives is None and not include_all and not conditions:
         kept = read_front(db)
         study, rows, used, sealed, chosen = kept.study, kept.rows, kept.used, kept.sealed, kept.study.objectives
         content_hash = kept.content_hash
@@ -89,8 +93,11 @@ def front(
         data = read_study(db)
         study, used, sealed, content_hash = data.study, in_use(data.trials), data.sealed, data.content_hash
         chosen = _objectives(objectives, data)
-        rows = data.front(include_ill_conditioned=include_all, objectives=chosen)
-        if chosen != study.objectives:
+        wanted = tuple(condition_on(one, chosen) for one in conditions)
+        rows = data.front(include_ill_conditioned=include_all, objectives=chosen, conditions=wanted)
+        if conditions and not len(rows) and len(data.sound):
+            required_fits(data.sound, wanted, chosen)  # says which design is nearest
+        if chosen != study.objectives or conditions:
             unaudited = int((~rows["trial"].isin(data.audits["trial"])).sum())
             note(f"designs without an audit: {unaudited} of {len(rows)}")
     say_of_study(study, sealed=sealed)
@@ -215,16 +222,14 @@ def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
 def pick(
     db: StudyPlace, selector: "Selector | None", count: int, tolerance: float, by_robust: bool, as_json: bool
 ) -> None:
-    """Pick one design from the front and say why it was chosen.
+    """Pick one design and say why it was chosen.
 
-    Conditions combine with each other and with one way to choose. Measures and variables have their stored names and
-    SI units.
+    Conditions make the front, and one way to choose takes a design from it; without a way, the best one is taken.
+    Measures and variables have their stored names and SI units.
     """
     from pareto_monoped.analysis.alternatives import alternatives
-    from pareto_monoped.analysis.at_bounds import binding_limits, front_alone
-    from pareto_monoped.analysis.choices import better_than, numbered, with_numbered
-    from pareto_monoped.analysis.remarks import refuse_empty
-    from pareto_monoped.pareto.pick import pick as pick_design
+    from pareto_monoped.analysis.at_bounds import binding_limits
+    from pareto_monoped.analysis.choices import better_than, choose, choose_of, dear_words
     from pareto_monoped.pareto.trade_offs import one_more
     from pareto_monoped.storage.front_reader import read_front
     from pareto_monoped.storage.reader import read_study
@@ -233,19 +238,16 @@ def pick(
     data = read_front(db)
     compared: RobustTrials | None = None
     if by_robust:
-        whole, compared, rows = _robust(db)
+        known, compared = _robust(db)
+        chosen = choose(replace(known, trials=compared.rows), wanted, notify=note)
     else:
-        whole, rows = front_alone(data), data.rows
-    number = numbered(wanted)
-    if number is not None and not (rows["trial"] == number).any():
-        known = read_study(db)
-        whole = known if compared is None else replace(known, trials=compared.rows)
-        rows = with_numbered(whole, rows, wanted)
+        chosen = choose_of(db, wanted, notify=note)
+    rows, picked = chosen.rows, chosen.picked
     names = shown_columns(data.study, data.used, data.study.objectives)
-    refuse_empty(rows, db)
-    picked = pick_design(rows, wanted, data.study.objectives)
-    step = one_more(rows, picked.trial, data.study.objectives)
-    limits = binding_limits(whole, picked.trial)
+    # Robustness is known of some designs only, which may lie many steps apart.
+    step = one_more(rows, picked.trial, data.study.objectives, between=by_robust)
+    limits = binding_limits(chosen.data, picked.trial)
+    dear = dear_words(db, rows[rows["trial"] == picked.trial].iloc[0])
     ahead = better_than(rows, picked.trial, data.study.objectives)
     others: tuple[Alternative, ...] = ()
     if count:
@@ -264,6 +266,8 @@ def pick(
         more: dict[str, Any] = {"why": picked.why, "one_more": step.as_dict(), "limits": limits}
         if ahead:
             more["behind"] = ahead
+        if dear:
+            more["dear"] = dear
         if count:
             more["alternatives"] = [other.as_dict() for other in others]
         echo(json.dumps(row | more, indent=2))
@@ -275,6 +279,8 @@ def pick(
         echo(
             wrapped(f"behind the front: {len(ahead)} of its designs are no worse in any objective, as trial {ahead[0]}")
         )
+    if dear:
+        echo(wrapped(dear))
     echo(wrapped(step.text()))
     echo(wrapped(f"limits: {'; '.join(limits) or 'none binds'}"))
     if by_robust:
@@ -288,8 +294,8 @@ def pick(
             echo(wrapped(f"{many}; 'robust DB --trial N' adds others"))
 
 
-def _robust(db: StudyPlace) -> "tuple[StudyData, RobustTrials, DataFrame]":
-    """Return the study, its trials by what is stored of their robustness, and their front."""
+def _robust(db: StudyPlace) -> "tuple[StudyData, RobustTrials]":
+    """Return the study, and its trials by what is stored of their robustness; refuse them if they have no front."""
     from pareto_monoped.analysis.robustness import robust_front, robust_trials
     from pareto_monoped.storage.extra_rows import read_robustness
     from pareto_monoped.storage.reader import read_study
@@ -298,7 +304,8 @@ def _robust(db: StudyPlace) -> "tuple[StudyData, RobustTrials, DataFrame]":
     trials = robust_trials(data, read_robustness(db))
     if trials.others:
         note(f"left out: {trials.others} trials with other ranges, samples or seed")
-    return data, trials, robust_front(data, trials)
+    robust_front(data, trials)
+    return data, trials
 
 
 def _print_alternatives(others: "tuple[Alternative, ...]", tolerance: float) -> None:

@@ -175,6 +175,7 @@ constraints = _completing(lambda: CONSTRAINT_NAMES)
 variables = _completing(_variables)
 measures = _completing(_measures)
 conditions = _completing(_conditions)
+names = _completing(lambda: (name.removesuffix("=") for name in _conditions()))
 formats = _completing(_formats)
 
 

@@ -39,7 +39,10 @@ def pareto(
     seed: int | None,
     no_strength: bool,
 ) -> None:
-    """Do the main job: gearboxes, fronts, CAD of a knee, report.
+    """Do the main job: gearboxes, fronts, CAD, report.
+
+    The design that gets CAD is the knee of the first front, or the compromise of three objectives, of the designs that
+    take less than 1.5 times the least battery energy stored for their height.
 
     The first front is that of the study. The second has the other energy in place of the study's: that at the battery
     for mechanical energy. A study of other objectives has one front only. Without
@@ -52,13 +55,11 @@ def pareto(
 
     # Before the search: minutes later would be too late to say so.
     require_extra("cad", "CAD")
-    from pareto_monoped.analysis.choices import counterpart
+    from pareto_monoped.analysis.choices import counterpart, default_pick
     from pareto_monoped.analysis.remarks import refuse_empty
     from pareto_monoped.cad.jobs import trial_job
     from pareto_monoped.cad.records import is_made
     from pareto_monoped.definition.study import NO_STRENGTH, load_study
-    from pareto_monoped.pareto.pick import pick
-    from pareto_monoped.pareto.selectors import Knee
     from pareto_monoped.storage.reader import read_study
 
     study_file = study_file or _first_study()
@@ -83,13 +84,12 @@ def pareto(
         dbs.append(_beside(db, other))
         steps.do("run", study_file, "--objectives", ",".join(other.names), "--db", dbs[1], *options)
     studies = [read_study(path) for path in dbs]
-    whole = studies[0].front()
-    refuse_empty(whole, studies[0])
-    knee = pick(whole, Knee(), study.objectives)
-    design = cad / f"trial_{knee.trial}"
-    job = trial_job(studies[0], knee.trial, folder=design)
+    refuse_empty(studies[0].front(), studies[0])
+    chosen = default_pick(studies[0], studies).trial
+    design = cad / f"trial_{chosen}"
+    job = trial_job(studies[0], chosen, folder=design)
     again = ["--force"] if (design / "design.json").exists() and not is_made(job) else []
-    steps.do("export", db, "--trial", knee.trial, "-o", design, *again, made=lambda: is_made(job))
+    steps.do("export", db, "--trial", chosen, "-o", design, *again, made=lambda: is_made(job))
     sources = (*dbs, design / "design.json")
     steps.do("report", *dbs, "-o", report, "--exports", cad, made=lambda: _newer(report, *sources))
 
@@ -99,11 +99,11 @@ def pareto(
     for path, what in (
         *((path, f"the lightest actuator of every ratio{_of(motor, study.motors)}") for motor, path in tables.items()),
         *fronts,
-        (design, "CAD and models of the knee design"),
+        (design, "CAD and models of one design"),
         (report, "the fronts: open it in a browser" if other else "the front: open it in a browser"),
     ):
         echo(f"  {path!s:<32} {what}")
-    _print_headline(studies[0], knee.trial)
+    _print_headline(studies[0], chosen)
     if other is not None:
         _print_choices(studies)
     word = "motor" if len(study.motors) == 1 else "motors"
@@ -175,7 +175,7 @@ def _newer(target: Path, *sources: Path) -> bool:
     return target.exists() and all(target.stat().st_mtime >= source.stat().st_mtime for source in sources)
 
 
-def _print_headline(data: "StudyData", knee_trial: int) -> None:
+def _print_headline(data: "StudyData", chosen_trial: int) -> None:
     from rich import box
     from rich.table import Table
 
@@ -185,7 +185,7 @@ def _print_headline(data: "StudyData", knee_trial: int) -> None:
     table.add_column("design")
     for title in ("height\n/ m", "energy\n/ J", "stands\n/ m", "rise\n/ m"):
         table.add_column(title, justify="right")
-    for row in headline(data, knee_trial):
+    for row in headline(data, chosen_trial):
         jump = (row.height_m, row.energy_j, row.height_m - row.above_standing_m, row.rise_m)
         table.add_row(row.label, *("-" if isnan(v) else f"{v:.{d}f}" for v, d in zip(jump, (3, 2, 3, 3), strict=True)))
     new_console(width=80).print(table)

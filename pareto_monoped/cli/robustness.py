@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 import click
 
 from pareto_monoped.cli import options
-from pareto_monoped.cli.selection import required, selector_options
-from pareto_monoped.cli.terminal import echo, wrapped
+from pareto_monoped.cli.selection import condition_options, required, selector_options
+from pareto_monoped.cli.terminal import echo, note, wrapped
 from pareto_monoped.storage.place import StudyPlace
 
 if TYPE_CHECKING:
     from pareto_monoped.definition.study import Study
     from pareto_monoped.measures import Measure
     from pareto_monoped.pareto.objectives import Objectives
-    from pareto_monoped.pareto.selectors import Selector
+    from pareto_monoped.pareto.selectors import Condition, MaxEnergy, Selector
     from pareto_monoped.uncertainty.sensitivity import FactorInfluence, Sensitivity
     from pareto_monoped.uncertainty.settings import Uncertainty
     from pareto_monoped.uncertainty.statistics import Robustness
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     shell_complete=options.trials,
     help="A trial, instead of the front.",
 )
+@condition_options
 @click.option(
     "--every", type=click.IntRange(min=1), default=1, metavar="N", help="Only every N-th design of the front."
 )
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
 def robust(
     db: StudyPlace,
     trials: tuple[int, ...],
+    conditions: "tuple[Condition | MaxEnergy, ...]",
     every: int,
     count: int,
     samples: int | None,
@@ -67,15 +69,19 @@ def robust(
     Masses, motors, friction, springs, lengths, gains, delay and battery vary together; all designs get the same
     samples. The results are stored in DB; what is there is not simulated again.
     """
+    from pareto_monoped.analysis.choices import settled_front
     from pareto_monoped.analysis.robustness import robust as run_robust
     from pareto_monoped.storage.front_reader import read_front
 
     if trials and every > 1:
         raise click.UsageError("--every goes with the front, not with --trial; drop one")
+    if trials and conditions:
+        raise click.UsageError("conditions make the front, and --trial names trials; drop one")
     place = options.where(processes, scheduler, workers)
     kept = read_front(db)
     ranges, samples, seed = asked(kept.study, uncertainty, samples, seed)
-    chosen = list(trials) or kept.rows["trial"].tolist()[::every]
+    front = settled_front(db, conditions, notify=note) if conditions else kept.rows
+    chosen = list(trials) or front["trial"].tolist()[::every]
     if count and chosen:
         from pareto_monoped.analysis.alternatives import alternatives
         from pareto_monoped.storage.reader import read_study
@@ -180,9 +186,8 @@ def sensitivity(
     The free variables move a little around the design; then everything that is uncertain in a built robot moves
     within its range. Results are stored in DB; what is there is not simulated again.
     """
-    from pareto_monoped.analysis.remarks import refuse_empty
+    from pareto_monoped.analysis.choices import choose_of
     from pareto_monoped.analysis.sensitivity import sensitivity as find
-    from pareto_monoped.pareto.pick import pick as pick_design
     from pareto_monoped.pareto.selectors import Trial
     from pareto_monoped.storage.front_reader import read_front
 
@@ -192,8 +197,7 @@ def sensitivity(
     if isinstance(wanted, Trial):
         trial = wanted.number  # which need not be on the front
     else:
-        refuse_empty(kept.rows, db)
-        trial = pick_design(kept.rows, wanted, kept.study.objectives).trial
+        trial = choose_of(db, wanted, notify=note).picked.trial
     with options.executor_at(place) as executor:
         found = find(
             db,
@@ -249,8 +253,7 @@ def _sensitivity_print(trial: int, found: "Sensitivity", shown: "list[Measure]")
     for one in found.ranked(shown[0].name):
         cells = ""
         for entry in shown:
-            influence = one.measures[entry.name]
-            share = f"{100.0 * influence.total:.0f}+-{100.0 * influence.error:.0f}"
+            share = one.measures[entry.name].share_text
             cells += f"{_change(entry, one):>10} {share:>8}"
         echo(f"{one.factor.label:<19} {one.factor.text:>22}{cells}")
 
@@ -260,9 +263,19 @@ def _say_which(found: "Sensitivity", shown: "list[Measure]") -> None:
     words = []
     for entry in shown:
         made = [one for one in found.ranked(entry.name) if one.factor.tolerance]
-        if made:
-            share = 100.0 * made[0].measures[entry.name].total
-            words.append(f"for {entry.words} {made[0].factor.label} ({share:.0f} %)")
+        if not made:
+            continue
+        first, *others = (one.measures[entry.name] for one in made)
+        if others and first.total - first.error < others[0].total + others[0].error:
+            both = f"{made[0].factor.label} or {made[1].factor.label}"
+            words.append(f"for {entry.words} {both}, which {found.blocks} samples do not tell apart")
+        else:
+            words.append(f"for {entry.words} {made[0].factor.label} ({first.share_text} %)")
     if words:
-        echo(wrapped(f"the manufacturing tolerance that matters most: {', '.join(words)}"))
-    echo(wrapped("share: total Sobol' index, with its 95 percent interval; change from end to end of the range"))
+        echo(wrapped(f"the manufacturing tolerance that matters most: {'; '.join(words)}"))
+    echo(
+        wrapped(
+            "share: total Sobol' index, with its 95 percent interval, or only that interval where it is wide; change "
+            "from end to end of the range"
+        )
+    )

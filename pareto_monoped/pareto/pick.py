@@ -1,7 +1,8 @@
-"""Pick one design from the front and say why.
+"""Pick one design and say why: conditions make the front, and a score chooses on it.
 
-Every way to choose, such as weights or a wish, is a score of the designs on the whole front. Conditions only say which
-designs may be chosen, so a condition that the chosen design meets never changes the choice.
+The front is that of the designs that meet the conditions, not of all. Scores, such as those by weights or by a wish,
+are scaled to the front without conditions, and never better for a design that another one dominates. So a condition
+that the chosen design meets does not change the choice, except by trade-offs, whose neighbours it takes away.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,12 +14,14 @@ from numpy.typing import NDArray
 
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.measures import ENERGIES, Measure, measure, nominal
+from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Floats, Objectives
 from pareto_monoped.pareto.selectors import (
     Among,
     Chooser,
     Compromise,
     Condition,
+    Extreme,
     Knee,
     MaxEnergy,
     MinHeight,
@@ -29,8 +32,11 @@ from pareto_monoped.pareto.selectors import (
     Weights,
     Within,
     column,
+    fitting,
     phrase,
     required_fits,
+    value_text,
+    words_of,
 )
 from pareto_monoped.pareto.trade_offs import Scored, knee, losses, scaled, tradeoff
 
@@ -38,9 +44,18 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 
-def weighted(values: Floats, weights: tuple[float, ...], objectives: Objectives) -> Scored:
+def front_within(
+    rows: "DataFrame", conditions: Sequence[Condition], objectives: Objectives, able: NDArray[np.bool_] | None = None
+) -> NDArray[np.bool_]:
+    """Find the non-dominated designs of those that meet the conditions, and are at the mask ``able``, shape (n,)."""
+    fits = fitting(rows, conditions)
+    values = np.stack([column(rows, name) for name in objectives.names], axis=1)
+    return front_mask(values, objectives, fits if able is None else fits & able)
+
+
+def weighted(values: Floats, front: Floats, weights: tuple[float, ...], objectives: Objectives) -> Scored:
     """Compute scores by the weighted sum of the objectives, each scaled to the extent of the front."""
-    value = -(scaled(values) * objectives.signs) @ _checked("weights", weights, objectives)
+    value = -(scaled(values, front) * objectives.signs) @ _checked("weights", weights, objectives)
     terms = "".join(
         f"{' + ' if entry.direction == 'maximise' else ' - '}{weight:g} x {entry.words}"
         for entry, weight in zip(objectives.measures, weights, strict=True)
@@ -51,10 +66,11 @@ def weighted(values: Floats, weights: tuple[float, ...], objectives: Objectives)
     )
 
 
-def compromise(values: Floats, weights: tuple[float, ...], objectives: Objectives) -> Scored:
+def compromise(values: Floats, front: Floats, weights: tuple[float, ...], objectives: Objectives) -> Scored:
     """Compute scores by the weighted Euclidean distance from the best of every objective, scaled (Zeleny 1973)."""
-    distance = np.linalg.norm(losses(values, objectives) * _checked("compromise", weights, objectives), axis=1)
-    best = objectives.signs * objectives.minimised(values).min(axis=0)
+    weighed = losses(values, front, objectives) * _checked("compromise", weights, objectives)
+    distance = np.linalg.norm(weighed, axis=1)
+    best = objectives.signs * objectives.minimised(front).min(axis=0)
     ideal = objectives.text(best.tolist())
     return Scored(
         score=-distance,
@@ -65,7 +81,7 @@ def compromise(values: Floats, weights: tuple[float, ...], objectives: Objective
     )
 
 
-def nearest(rows: "DataFrame", wish: Mapping[str, float]) -> Scored:
+def nearest(rows: "DataFrame", front: "DataFrame", wish: Mapping[str, float]) -> Scored:
     """Compute scores by the greatest shortfall from the wish (Wierzbicki 1980, The use of reference objectives).
 
     Shortfalls are scaled to the extent of the front. A wish that several designs surpass goes to the one that surpasses
@@ -75,9 +91,9 @@ def nearest(rows: "DataFrame", wish: Mapping[str, float]) -> Scored:
     for name, wanted in wish.items():
         values = column(rows, name)
         if np.isnan(values).all():
-            raise SelectionError(f"nearest {name} = {wanted:g}: no design on the front has a value of it; drop it")
+            raise SelectionError(f"nearest {name} = {wanted:g}: no design has a value of it; drop it")
         sign = -1.0 if measure(name).direction == "maximise" else 1.0
-        extent = float(np.nanmax(values) - np.nanmin(values))
+        extent = _extent(column(front, name)) or _extent(values)
         columns.append(np.nan_to_num(sign * (values - wanted) / (extent or 1.0), nan=np.inf))
     short = np.stack(columns, axis=1)
     worst = short.max(axis=1)
@@ -91,6 +107,11 @@ def nearest(rows: "DataFrame", wish: Mapping[str, float]) -> Scored:
         return f"nearest to the wish ({point}), at most {worst[row]:.3f} of the front's extent short of it"
 
     return Scored(score=rank, why=why)
+
+
+def _extent(values: Floats) -> float:
+    finite = values[np.isfinite(values)]
+    return float(np.ptp(finite)) if len(finite) else 0.0
 
 
 def _checked(option: str, weights: tuple[float, ...], objectives: Objectives) -> Floats:
@@ -116,48 +137,76 @@ class Pick:
     conditions: tuple[Condition, ...] = ()
 
 
-def pick(front: "DataFrame", selector: Selector, objectives: Objectives = HEIGHT_AND_ENERGY) -> Pick:
-    """Pick the design of ``front``, one row per design in any order, that ``selector`` asks for.
+def pick(
+    rows: "DataFrame",
+    selector: Selector,
+    objectives: Objectives = HEIGHT_AND_ENERGY,
+    able: NDArray[np.bool_] | None = None,
+) -> Pick:
+    """Pick the design that ``selector`` asks for of all that may be chosen, one row per design in any order.
+
+    ``needs_front_only`` says which selectors need the front only. ``able`` leaves out designs as a condition does,
+    shape (n,).
 
     Raises:
-        SelectionError: the front is empty, none of its designs fits, or the selector does not suit the objectives.
+        SelectionError: there are no designs, none of them fits, or the selector does not suit the objectives.
     """
-    if len(front) == 0:
+    if len(rows) == 0:
         raise SelectionError(
             "front: has 0 designs, at least 1 is needed to pick from; run the study longer or relax its constraints"
         )
-    rows = front.sort_values(objectives.names[0], kind="stable")
+    order = np.argsort(rows[objectives.names[0]].to_numpy(dtype=np.float64), kind="stable")
+    rows, able = rows.iloc[order], None if able is None else able[order]
     conditions, chooser = _asked(selector, objectives)
     fits = required_fits(rows, conditions, objectives)
-    if chooser is None:
-        row, why = _best(rows, fits, conditions, objectives)
-    else:
-        row, why = _chosen(rows, fits, chooser, objectives)
-        if conditions:
-            why += f", of the {fits.sum()} designs on the front that {phrase(conditions)}"
+    inside = front_within(rows, conditions, objectives, able)
+    whole = rows[front_within(rows, (), objectives) if conditions or able is not None else inside]
+    phrased = f" that {phrase(conditions)}" if conditions else ""
+    match chooser:
+        case None:
+            row, why = _best(rows, inside, conditions, objectives)
+        case Trial(number=number):
+            row, why = _numbered(rows, fits, inside, number), "asked for by its number"
+        case Extreme():
+            row, why = _extreme(rows, fits, chooser, objectives)
+            why += f" of the {fits.sum()} feasible designs{phrased}"
+        case _:
+            row, why = _chosen(rows, inside, fits, whole, chooser, objectives)
+            if conditions:
+                why += f", of the {inside.sum()} designs on the front{phrased}"
     found = rows.iloc[row]
     values = found[list(objectives.names)].to_numpy(dtype=np.float64).tolist()
     trial = int(found["trial"])
     return Pick(trial=trial, why=f"trial {trial} ({objectives.text(values)}): {why}", conditions=conditions)
 
 
+def needs_front_only(selector: Selector, objectives: Objectives) -> bool:
+    """Return whether a design of the front without conditions is sure to be the answer, so that it is all to look at.
+
+    The number of a trial counts, too: whether that is on the front is known only then.
+    """
+    conditions, chooser = _asked(selector, objectives)
+    wish = chooser.wish if isinstance(chooser, Nearest) else ()
+    return not conditions and not isinstance(chooser, Extreme) and set(wish) <= set(objectives.names)
+
+
 def _asked(selector: Selector, objectives: Objectives) -> tuple[tuple[Condition, ...], Chooser | None]:
     """Return any selector as conditions, and what chooses among the designs that meet them."""
     match selector:
         case Among():
-            return tuple(_condition(one, objectives) for one in selector.conditions), selector.chooser
+            return tuple(condition_on(one, objectives) for one in selector.conditions), selector.chooser
         case MinHeight(height_m=wanted):
             asked = Condition(name="height_m", side="min", value=wanted, asked="min-height")
-            return (_condition(asked, objectives),), None
+            return (condition_on(asked, objectives),), None
         case MaxEnergy():
-            return (_condition(selector, objectives),), None
+            return (condition_on(selector, objectives),), None
         case Within(measure=name, value=value):
             return (at_or_better(name, value),), None
         case _:
             return (), selector
 
 
-def _condition(given: Condition | MaxEnergy, objectives: Objectives) -> Condition:
+def condition_on(given: Condition | MaxEnergy, objectives: Objectives) -> Condition:
     """Return a condition as it is; ``MaxEnergy`` as one on the energy that is an objective.
 
     What is asked of "the height" or "the energy" is asked of the statistic of it that is an objective.
@@ -185,17 +234,29 @@ def at_or_better(name: str, value: float) -> Condition:
 
 
 def _best(
-    rows: "DataFrame", fits: NDArray[np.bool_], conditions: Sequence[Condition], objectives: Objectives
+    rows: "DataFrame", inside: NDArray[np.bool_], conditions: Sequence[Condition], objectives: Objectives
 ) -> tuple[int, str]:
-    """Return the best of the designs that fit in the first objective without a condition; ties by the others."""
+    """Return the best in the first objective without a condition, else in the second; ties by the other ones."""
     limited = {condition.name for condition in conditions}
     free = [entry for entry in objectives.measures if entry.name not in limited]
-    other = free[0] if free else objectives.other_than(conditions[0].name)
+    other = free[0] if free else objectives.measures[1]
     order = [other, *(entry for entry in objectives.measures if entry != other)]
     less_is_better = [rows[one.name] * (-1.0 if one.direction == "maximise" else 1.0) for one in reversed(order)]
-    places = np.lexsort([*less_is_better, ~fits])
-    why = f"the {_superlative(other)} of the {fits.sum()} designs on the front that {phrase(conditions)}"
+    places = np.lexsort([*less_is_better, ~inside])
+    why = f"the {_superlative(other)} of the {inside.sum()} designs on the front that {phrase(conditions)}"
     return int(places[0]), why
+
+
+def _extreme(rows: "DataFrame", fits: NDArray[np.bool_], asked: Extreme, objectives: Objectives) -> tuple[int, str]:
+    """Return the design with the least or the most of a measure or variable; ties by the objectives."""
+    values = column(rows, asked.name)
+    able = fits & np.isfinite(values)
+    word = "most" if asked.most else "least"
+    if not able.any():
+        raise SelectionError(f"{word} {asked.name}: no design has a value of it; choose another measure")
+    loss = objectives.minimised(rows[list(objectives.names)].to_numpy(dtype=np.float64))
+    row = int(np.lexsort([*loss.T[::-1], -values if asked.most else values, ~able])[0])
+    return row, f"the {word} {words_of(asked.name)}, {value_text(asked.name, float(values[row]))},"
 
 
 def _superlative(entry: Measure) -> str:
@@ -204,33 +265,43 @@ def _superlative(entry: Measure) -> str:
     return f"{'most' if entry.direction == 'maximise' else 'least'} {entry.words}"
 
 
-def _chosen(rows: "DataFrame", fits: NDArray[np.bool_], chooser: Chooser, objectives: Objectives) -> tuple[int, str]:
-    """Return the design of the greatest score among those that fit, and why."""
-    values = rows[list(objectives.names)].to_numpy(dtype=np.float64)
+def _chosen(
+    rows: "DataFrame",
+    inside: NDArray[np.bool_],
+    fits: NDArray[np.bool_],
+    whole: "DataFrame",
+    chooser: Knee | Tradeoff | Weights | Compromise | Nearest,
+    objectives: Objectives,
+) -> tuple[int, str]:
+    """Return the design of the greatest score on the front within the conditions, and why.
+
+    A wish may be about measures that are no objectives, so it is compared with all designs that meet the conditions.
+    """
+    able = fits if isinstance(chooser, Nearest) else inside
+    among, names = rows[able], list(objectives.names)
+    values, front = (table[names].to_numpy(dtype=np.float64) for table in (among, whole))
     match chooser:
         case Knee():
-            scored = knee(values, objectives)
+            scored = knee(values, front, objectives)
         case Tradeoff():
-            scored = tradeoff(values, objectives)
+            scored = tradeoff(values, front, objectives)
         case Weights():
-            scored = weighted(values, chooser.values, objectives)
+            scored = weighted(values, front, chooser.values, objectives)
         case Compromise():
-            scored = compromise(values, chooser.values, objectives)
+            scored = compromise(values, front, chooser.values, objectives)
         case Nearest(wish=wish):
-            scored = nearest(rows, wish)
-        case Trial(number=number):
-            return _numbered(rows, fits, number), "asked for by its number"
-    row = int(np.argmax(np.where(fits, scored.score, -np.inf)))
-    return row, scored.why(row)
+            scored = nearest(among, whole, wish)
+    row = int(np.argmax(scored.score))
+    return int(np.flatnonzero(able)[row]), scored.why(row)
 
 
-def _numbered(rows: "DataFrame", fits: NDArray[np.bool_], number: int) -> int:
+def _numbered(rows: "DataFrame", fits: NDArray[np.bool_], inside: NDArray[np.bool_], number: int) -> int:
     trials = rows["trial"].to_numpy()
     found = np.flatnonzero((trials == number) & fits)
     if len(found):
         return int(found[0])
     where = "be on the front, which has" if fits.all() else "be on the front and meet the conditions, as do"
-    raise SelectionError(f"trial = {number}: must {where} trials {_listed(trials[fits])}; pick one of them")
+    raise SelectionError(f"trial = {number}: must {where} trials {_listed(trials[inside])}; pick one of them")
 
 
 def _listed(trials: NDArray[np.int64], most: int = 8) -> str:

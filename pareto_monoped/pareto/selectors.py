@@ -1,7 +1,8 @@
 """What can be asked of a front: one of its designs, under conditions; which designs meet these, and their wording."""
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -88,8 +89,16 @@ class Trial:
     number: int
 
 
-Chooser = Knee | Tradeoff | Weights | Compromise | Nearest | Trial
-"""What chooses by the shape of the front, and is not itself a condition."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extreme:
+    """The design with the least or the most of a measure or variable, also where no objective is about it."""
+
+    name: str
+    most: bool
+
+
+Chooser = Knee | Tradeoff | Weights | Compromise | Nearest | Trial | Extreme
+"""What chooses, and is not itself a condition."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,7 +106,7 @@ class Among:
     """A choice among the designs that meet all conditions.
 
     Without ``chooser`` it is the best design in the first objective that no condition is about, or, if they are about
-    all objectives, in the first one besides that of the first condition.
+    all objectives, in the second one.
     """
 
     conditions: tuple[Condition | MaxEnergy, ...]
@@ -132,13 +141,12 @@ def meets(values: Floats, condition: Condition) -> NDArray[np.bool_]:
 
 def required_fits(rows: "DataFrame", conditions: Sequence[Condition], objectives: Objectives) -> NDArray[np.bool_]:
     """Return ``fitting``; if no design meets all conditions, refuse them and name the nearest that can be had."""
-    for condition in conditions:
-        values = column(rows, condition.name)
-        if not meets(values, condition).any():
-            raise SelectionError(_unmet(values, condition))
     fits = fitting(rows, conditions)
     if not fits.any():
-        raise SelectionError(_unmet_together(rows, conditions, objectives))
+        for condition in conditions:
+            if np.isnan(column(rows, condition.name)).all():
+                raise SelectionError(f"{asked(condition)}: no design has a value of it; limit another measure")
+        raise SelectionError(_unmet(rows, conditions, objectives))
     return fits
 
 
@@ -159,42 +167,53 @@ def _phrase(condition: Condition) -> str:
     if condition.name == "energy_j" and condition.side == "max":
         return f"need at most {_valued(condition)}"
     side = "least" if condition.side == "min" else "most"
-    return f"have at {side} {_valued(condition)} of {_words(condition.name)}"
+    return f"have at {side} {_valued(condition)} of {words_of(condition.name)}"
 
 
-def _unmet(values: Floats, condition: Condition) -> str:
-    """Return what to say of a condition that no design meets."""
-    if np.isnan(values).all():
-        return f"{asked(condition)}: no design on the front has a value of it; limit another measure"
-    at_least = condition.side == "min"
-    best = np.nanmax(values) if at_least else np.nanmin(values)
-    side, what, cure = ("most", "highest", "ask for less") if at_least else ("least", "lowest", "allow more")
-    return (
-        f"{asked(condition)}: must be at {side} {best:.4f}{_unit(condition.name)}, the front's {what} "
-        f"{_words(condition.name)}; {cure}, or run the study longer"
-    )
-
-
-def _unmet_together(rows: "DataFrame", conditions: Sequence[Condition], objectives: Objectives) -> str:
-    """Return the message on conditions that no design meets together: the design that comes nearest."""
-    row = nearest_row(rows, conditions)
-    found = rows.iloc[row]
+def _unmet(rows: "DataFrame", conditions: Sequence[Condition], objectives: Objectives) -> str:
+    """Return the message on conditions that no design meets: the nearest one, and which of them would have to give."""
+    found = rows.iloc[nearest_row(rows, conditions)]
     missed = ", ".join(
-        f"{_words(condition.name)} {found[condition.name]:.4g}{_unit(condition.name)}"
-        for condition in conditions
-        if not meets(np.array([float(found[condition.name])]), condition)[0]
+        f"{words_of(one.name)} {value_text(one.name, float(found[one.name]))}"
+        for one in conditions
+        if not meets(np.array([float(found[one.name])]), one)[0]
     )
     values = found[list(objectives.names)].to_numpy(dtype=np.float64).tolist()
+    cures = " or ".join(f"{asked(given)} ({by} {give})" for given, by, give in _giving(rows, conditions))
+    every = "it" if len(conditions) == 1 else "all"
     return (
-        f"{', '.join(map(asked, conditions))}: no design on the front meets all; the nearest is trial "
-        f"{int(found['trial'])} ({objectives.text(values)}) with {missed}; relax a condition, or run the study longer"
+        f"{', '.join(map(asked, conditions))}: no stored design meets {every}; the nearest is trial "
+        f"{int(found['trial'])} ({objectives.text(values)}) with {missed}; "
+        f"{f'met with {cures}' if cures else 'no single one is in the way: relax two'}, or run the study longer"
     )
+
+
+def _giving(rows: "DataFrame", conditions: Sequence[Condition]) -> list[tuple[Condition, str, str]]:
+    """Return each condition as it can be met with all others as they are, by how much it gives, and which way."""
+    found = []
+    for k, one in enumerate(conditions):
+        values = column(rows, one.name)[fitting(rows, [*conditions[:k], *conditions[k + 1 :]])]
+        values = values[np.isfinite(values)]
+        if len(values):
+            value = _enough(float(values.max() if one.side == "min" else values.min()), one.side)
+            by = f"{abs(value - one.value):.3g}{_unit(one.name)}"
+            found.append((replace(one, value=value), by, "less" if one.side == "min" else "more"))
+    return found
+
+
+def _enough(value: float, side: Side) -> float:
+    """Return a number of five digits that a value still meets as a condition."""
+    rounded = float(f"{value:.5g}")
+    if (rounded > value) if side == "min" else (rounded < value):
+        step = 10.0 ** (math.floor(math.log10(abs(value))) - 4)
+        rounded = float(f"{rounded - step if side == 'min' else rounded + step:.5g}")
+    return rounded
 
 
 def nearest_row(rows: "DataFrame", conditions: Sequence[Condition]) -> int:
     """Return the position of the design that misses the conditions by least.
 
-    A miss counts as a share of the front's extent in that quantity. The design with the least greatest share comes
+    A miss counts as a share of the designs' extent in that quantity. The design with the least greatest share comes
     first, of equal ones that with the least sum.
     """
     missed = np.stack([_shortfall(rows[one.name].to_numpy(dtype=np.float64), one) for one in conditions])
@@ -208,7 +227,7 @@ def _shortfall(values: Floats, condition: Condition) -> Floats:
     return np.nan_to_num(np.maximum(beyond, 0.0), nan=np.inf) / (extent or 1.0)
 
 
-def _words(name: str) -> str:
+def words_of(name: str) -> str:
     """Return what a measure or a variable is called in a sentence."""
     return name if name in _VARIABLES else measure(name).words
 
@@ -217,6 +236,11 @@ def _unit(name: str) -> str:
     """Return its stored unit behind a number; empty for shares and ratios."""
     unit = _VARIABLES[name].unit if name in _VARIABLES else measure(name).unit
     return "" if unit == "1" else f" {unit}"
+
+
+def value_text(name: str, value: float) -> str:
+    """Return a value of a measure or a variable in five digits, with its stored unit."""
+    return f"{value:.5g}{_unit(name)}"
 
 
 def _valued(condition: Condition) -> str:

@@ -22,48 +22,48 @@ class Scored:
     why: Callable[[int], str]  #: the reason for choosing the design in a row, as a part of a sentence
 
 
-def scaled(values: Floats) -> Floats:
-    """Return each column scaled to its extent, from 0 to 1; zeros where all values are equal."""
-    least, extent = values.min(axis=0), np.ptp(values, axis=0)
+def scaled(values: Floats, front: Floats) -> Floats:
+    """Return each column scaled to its extent on a front, from 0 to 1 there; zeros where all values are equal."""
+    least, extent = front.min(axis=0), np.ptp(front, axis=0)
     return np.where(extent > 0.0, (values - least) / np.where(extent > 0.0, extent, 1.0), 0.0)
 
 
-def losses(values: Floats, objectives: Objectives) -> Floats:
-    """Return objectives scaled to the extent of the front, shape (n, m): 0 is the best of each, 1 the worst."""
-    return scaled(objectives.minimised(values))
+def losses(values: Floats, front: Floats, objectives: Objectives) -> Floats:
+    """Return objectives scaled to the extent of a front, shape (n, m): 0 is its best of each, 1 its worst."""
+    return scaled(objectives.minimised(values), objectives.minimised(front))
 
 
 NEIGHBOURHOOD = 0.125
 """Distance on the scaled front within which designs are neighbours. Source: pymoo, ``mcdm.high_tradeoff``."""
 
 
-def knee(values: Floats, objectives: Objectives) -> Scored:
+def knee(values: Floats, front: Floats, objectives: Objectives) -> Scored:
     """Compute scores by the distance from the chord (Das 1999, On characterizing the "knee" of the Pareto curve).
 
     With each objective scaled to the extent of the front and its better end at 1, the ends of a front of two objectives
     are (0, 1) and (1, 0), and a point's distance from the chord between them is (sum of the scaled objectives - 1) /
     sqrt(2). For three objectives the chord becomes the plane through (1, 0, 0), (0, 1, 0) and (0, 0, 1), and the
-    divisor sqrt(3). ``values``, shape (n, m), are sorted by the first objective.
+    divisor sqrt(3). ``front``, shape (n, m), is sorted by the first objective.
     """
-    n, m = values.shape
+    n, m = front.shape
     # The better end of a minimised objective lies at 1 - scaled. The ones are added last: with the paper's objectives
     # nothing is left of them, so that no digit is lost.
     ones = (objectives.signs > 0.0).sum() - 1
-    distance = (-(scaled(values) * objectives.signs).sum(axis=1) + ones) / np.sqrt(float(m))
+    distance = (-(scaled(values, front) * objectives.signs).sum(axis=1) + ones) / np.sqrt(float(m))
 
     def why(row: int) -> str:
         if n < m + 1:
             return f"the front has only {n} design(s), so its knee is an end of it"
-        return f"the knee, farthest ({distance[row]:.3f} of the scaled front) from {_flat(values, objectives)}"
+        return f"the knee, farthest ({distance[row]:.3f} of the scaled front) from {_flat(front, objectives)}"
 
     return Scored(score=distance, why=why)
 
 
-def _flat(values: Floats, objectives: Objectives) -> str:
+def _flat(front: Floats, objectives: Objectives) -> str:
     """Return what the knee is farthest from."""
     if len(objectives.names) > 2:
         return "the plane through the best of each objective"
-    first, last = values[0], values[-1]
+    first, last = front[0], front[-1]
     if objectives == HEIGHT_AND_ENERGY:
         ends = [f"{height:.3f} m at {energy:.2f} J" for height, energy in (first, last)]
     else:
@@ -71,13 +71,13 @@ def _flat(values: Floats, objectives: Objectives) -> str:
     return f"the chord between the front's ends {ends[0]} and {ends[1]}"
 
 
-def tradeoff(values: Floats, objectives: Objectives) -> Scored:
+def tradeoff(values: Floats, front: Floats, objectives: Objectives) -> Scored:
     """Compute scores by what the best step to a neighbour gives up for what it gains (Rachmawati and Srinivasan 2009).
 
-    Both are sums over the objectives, scaled to the extent of the front. Neighbours are the designs within
+    Both are sums over the objectives, scaled to the extent of the front. Neighbours are the ``values`` within
     ``NEIGHBOURHOOD``, and at least the 2 m nearest ones and all that are as near.
     """
-    points = losses(values, objectives)
+    points = losses(values, front, objectives)
     least = np.array([_least_bargain(points, i) for i in range(len(points))])
 
     def why(row: int) -> str:
@@ -121,6 +121,7 @@ class OneMore:
     #: By how much each other objective becomes worse with it, in stored units; negative where it gets better
     costs: tuple[float, ...] = ()
     values: tuple[float, ...] = ()  #: of that design's objectives
+    between: bool = False  #: whether ``costs`` are those of the step alone, on the straight line to that design
 
     def text(self) -> str:
         """Return a sentence such as "one more centimetre of height costs 0.52 J of energy (trial 3: ...)"."""
@@ -134,7 +135,9 @@ class OneMore:
                 verb = {"costs": "takes", "saves": "adds"}[verb]
             shown = f"{worse * entry.scale:.3g} {entry.shown_unit}".removesuffix(" 1")
             parts.append(f"{verb} {shown} of {entry.words}")
-        return f"{self.step_words} {' and '.join(parts)} (trial {self.trial}: {self.objectives.text(self.values)})"
+        towards = "on the straight line to " if self.between else ""
+        found = f"{towards}trial {self.trial}: {self.objectives.text(self.values)}"
+        return f"{self.step_words} {' and '.join(parts)} ({found})"
 
     def as_dict(self) -> dict[str, object]:
         """Return the step, and the cost in each other objective, as JSON values."""
@@ -143,29 +146,31 @@ class OneMore:
         return {"objective": first, "step": self.step, "trial": self.trial, "costs": costs}
 
 
-def one_more(front: "DataFrame", trial: int, objectives: Objectives) -> OneMore:
+def one_more(front: "DataFrame", trial: int, objectives: Objectives, *, between: bool = False) -> OneMore:
     """Return what the next step in the first objective costs at a trial of the front.
 
     Neighbours on a front are at random distances, so the cost is that of the cheapest design that is better by at least
     a whole step: with three objectives that with the least sum of losses in the other two, scaled to the front's
-    extent.
+    extent. Where only few designs of a front are known, ``between`` gives the cost on the straight line to that one.
     """
     values = front[list(objectives.names)].to_numpy(dtype=np.float64)
     row = int(np.flatnonzero(front["trial"].to_numpy() == trial)[0])
     step, words = _step(values[:, 0], objectives)
-    loss, scaled = objectives.minimised(values), losses(values, objectives)
+    loss, scaled = objectives.minimised(values), losses(values, values, objectives)
     # A design exactly one step away must not be lost to the last digit.
     better = np.flatnonzero(loss[:, 0] <= loss[row, 0] - step * (1.0 - 1e-9))
     if len(better) == 0:
         return OneMore(objectives=objectives, step=step, step_words=words, trial=None)
     found = int(better[np.argmin(scaled[better, 1:].sum(axis=1))])
+    share = step / (loss[row, 0] - loss[found, 0]) if between else 1.0
     return OneMore(
         objectives=objectives,
         step=step,
         step_words=words,
         trial=int(front["trial"].iloc[found]),
-        costs=tuple((loss[found, 1:] - loss[row, 1:]).tolist()),
+        costs=tuple((share * (loss[found, 1:] - loss[row, 1:])).tolist()),
         values=tuple(values[found].tolist()),
+        between=between,
     )
 
 

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from pareto_monoped.actuator.ratiomap import JointMaps
 from pareto_monoped.analysis.at_bounds import bound_lines
+from pareto_monoped.analysis.choices import default_pick
+from pareto_monoped.analysis.sensitivity import importances
 from pareto_monoped.definition.algorithms import WeightedSettings
 from pareto_monoped.definition.variables import Bounds
 from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES, PAPER_CASES, Variable
@@ -19,11 +21,12 @@ from pareto_monoped.jump.gravity import least_of_all_j
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.shank import foot_part
 from pareto_monoped.pareto.pick import pick
-from pareto_monoped.pareto.selectors import Knee, MinHeight, Selector
+from pareto_monoped.pareto.selectors import Knee, MinHeight, Selector, Trial
 from pareto_monoped.report.comparison import group_of
 from pareto_monoped.report.motors import gearbox_numbers
 from pareto_monoped.report.packing import column
 from pareto_monoped.report.packing import packed as packed_jumps
+from pareto_monoped.report.quantities import LEADING
 from pareto_monoped.report.resimulation import MOST_FRAMES, Resimulation, jumps_of, of_trials
 from pareto_monoped.report.robust import alternatives_of, influences_of, robust_of
 from pareto_monoped.report.schema import Model3D, Picked, StudyCard
@@ -38,6 +41,8 @@ from pareto_monoped.uncertainty.sensitivity import About
 if TYPE_CHECKING:
     from pareto_monoped.jump.frames import Recording
 
+DEFAULT = "default"
+"""Name of the design that the page opens on, where that is not the knee."""
 HEADLINES_M = (0.7, HEADLINE_HEIGHT_M, 0.9)
 """Heights at which designs are pointed out and studies compared: that of the paper's Case C and 0.1 m around it."""
 
@@ -75,9 +80,18 @@ class Source:
 
 
 def study_card(
-    source: Source, label: str, most_rows: int, places: Places, variables: Sequence[Variable], goals: Sequence[str] = ()
+    source: Source,
+    label: str,
+    most_rows: int,
+    places: Places,
+    variables: Sequence[Variable],
+    goals: Sequence[str] = (),
+    studies: Sequence[StudyData] = (),
 ) -> StudyCard:
-    """Return what the page says of a study with at most ``most_rows`` trials; ``goals`` are all studies' objectives."""
+    """Return what the page says of a study with at most ``most_rows`` trials.
+
+    ``goals`` are the objectives of all ``studies`` on the page.
+    """
     data, study, again = source.data, source.data.study, source.resimulation
     front = data.front()
     weights = best_of_weights(data)
@@ -90,7 +104,7 @@ def study_card(
     foot_kg, foot_radius_m = _foot(data)
     cases = pd.DataFrame([case.design.as_array() for case in PAPER_CASES.values()], columns=list(NAMES))
     several = len(study.kits) > 1
-    picks, masses_kg = _picks(data, front, row_of), _body_masses_kg(data, front)
+    picks, masses_kg = _picks(data, studies or (data,), front, row_of), _body_masses_kg(data, front)
     failed = data.trials.loc[state == "failed", "status"].value_counts()
     chosen: dict[str, Sequence[int]] = dict(_gearboxes(trials, data.kit_rows(trials), places.maps))
     if several:
@@ -144,6 +158,7 @@ def study_card(
         foot_radius_m=foot_radius_m,
         provenance=provenance(data),
         reproduce=command(data),
+        importances=importances(data, tuple(dict.fromkeys((*goals, *LEADING)))),
         robust=robust_of(data, source.robustness, row_of),
         sensitivity=influences_of(source.sensitivities),
     )
@@ -218,16 +233,22 @@ def _foot(data: StudyData) -> tuple[float, float]:
     return mass_kg, radius_m
 
 
-def _picks(data: StudyData, front: pd.DataFrame, row_of: Mapping[int, int]) -> list[Picked]:
-    """Return the knee, and the best designs at the headline heights, if height is an objective."""
+def _picks(
+    data: StudyData, studies: Sequence[StudyData], front: pd.DataFrame, row_of: Mapping[int, int]
+) -> list[Picked]:
+    """Return the design to begin with, the knee, and, if height is an objective, the best at the headline heights."""
     objectives = data.study.objectives
     heights = HEADLINES_M if "height_m" in objectives.names else ()
-    named: list[tuple[str, Selector]] = [("knee", Knee())]
+    if len(front) == 0:
+        return []
+    first, knee = default_pick(data, studies), pick(front, Knee(), objectives)
+    named: list[tuple[str, Selector]] = [] if first.trial == knee.trial else [(DEFAULT, Trial(number=first.trial))]
+    named.append(("knee", Knee()))
     named += [(f"{height:g} m", MinHeight(height_m=height)) for height in heights]
     found: list[Picked] = []
     for name, selector in named:
         try:
-            picked = pick(front, selector, objectives)
+            picked = first if name == DEFAULT else pick(front, selector, objectives)
         except SelectionError:
             continue
         if row_of[picked.trial] not in [p.row for p in found]:

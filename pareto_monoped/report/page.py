@@ -12,6 +12,8 @@ from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from pareto_monoped import __version__
 from pareto_monoped.analysis.choices import WORDS
 from pareto_monoped.compute.chunks import cores
@@ -26,16 +28,18 @@ from pareto_monoped.report.comparison import compare
 from pareto_monoped.report.context import context_section
 from pareto_monoped.report.exports import read_models
 from pareto_monoped.report.motors import leg_table, motor_tables
+from pareto_monoped.report.packing import packed_column, unpacked_column
 from pareto_monoped.report.quantities import COMPARED, LEADING, quantities_of
 from pareto_monoped.report.resimulation import frames_for, resimulate
 from pareto_monoped.report.robust import names_of
-from pareto_monoped.report.schema import Constants, Gearbox, Kit, MotorMap, Payload, StudyCard
+from pareto_monoped.report.schema import Constants, Gearbox, Kit, MotorMap, Payload, StudyCard, Trials
 from pareto_monoped.report.tables import (
     ask_fields,
     cases_table,
     comparison_tables,
     designs_table,
     head,
+    importance_tables,
     kind,
     order,
     provenance_tables,
@@ -55,8 +59,8 @@ PUBLISHED_LINK_KG, PUBLISHED_LINK_KG_PER_M = 0.235, 0.828
 """Mass of a link over its length: straight line through the masses of links that the authors published, for lengths
 from 150 to 350 mm."""
 SCRIPTS = (
-    "dom", "data", "jumps", "state", "subject", "link", "scales", "marks", "plots", "chart", "space", "front", "axes",
-    "robust", "ask", "robot", "lines", "detail", "parallel", "table", "search", "viewer",
+    "dom", "data", "jumps", "state", "choose", "subject", "link", "scales", "marks", "plots", "chart", "subplots",
+    "space", "front", "axes", "robust", "ask", "robot", "lines", "detail", "parallel", "table", "search", "viewer",
     "shortlist", "compare", "print", "main",
 )  # fmt: skip
 """The page's own scripts, in the order in which they run; together they are one closed scope."""
@@ -99,7 +103,8 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
         ends = {kit.label: (own[kit.hip.motor.name], own[kit.knee.motor.name]) for kit in source.data.kits}
         numbers = {label: list(kits).index(pair) for label, pair in ends.items()}
         found = Places(maps={name: places[place] for name, place in own.items()}, kits=numbers)
-        cards.append(study_card(source, label, most_rows, found, variables, goals))
+        data = [one.data for one in sources]
+        cards.append(study_card(source, label, most_rows, found, variables, goals, data))
     return Payload(
         version=__version__,
         title=_title(cards),
@@ -146,7 +151,7 @@ def _axes(cards: Sequence[StudyCard]) -> list[str]:
             if len({value for value in values if value is not None}) > 1:
                 differ.add(name)
         for packed in (card.trials.packed, card.robust.packed if card.robust is not None else {}):
-            differ.update(n for n, text in packed.items() if len({text[i : i + 4] for i in range(0, len(text), 4)}) > 1)
+            differ.update(n for n, text in packed.items() if len(np.unique(unpacked_column(text), equal_nan=True)) > 1)
     return sorted(differ - {"hip_gearbox", "knee_gearbox", "motor"})
 
 
@@ -233,7 +238,7 @@ def page(payload: Payload) -> str:
     """Return the whole HTML text."""
     script = "(() => {\n'use strict';\n" + "\n".join(asset(f"{name}.js") for name in SCRIPTS) + "\n})();\n"
     return Template(asset("page.html")).substitute(
-        policy=policy(script),
+        policy=policy(plotly(), script),
         title=safe(payload.title),
         style="".join(asset(f"{name}.css") for name in STYLES),
         head=head(payload),
@@ -242,12 +247,14 @@ def page(payload: Payload) -> str:
         order=safe(order(payload)),
         comparison=comparison_tables(payload),
         designs=designs_table(payload),
+        importances=importance_tables(payload),
         published_link=published_link(payload),
         cases=cases_table(payload),
         context=context_section(payload),
         provenance=provenance_tables(payload),
         version=safe(payload.version),
         payload=embedded_json(payload),
+        plotly=plotly(),
         script=script,
     )
 
@@ -260,15 +267,36 @@ def embedded_json(values: Any) -> str:
 
 def _plain(value: Any) -> Any:
     if is_dataclass(value) and not isinstance(value, type):
-        return {name: getattr(value, name) for name in value.__dataclass_fields__}
+        fields = {name: getattr(value, name) for name in value.__dataclass_fields__}
+        if isinstance(value, Trials):
+            # Shorter than numbers in words; whole numbers, such as those of gearboxes, stay as they are.
+            numbers = {name: any(isinstance(one, float) for one in column) for name, column in value.columns.items()}
+            fields["columns"] = {
+                name: packed_column(np.array(column, dtype=np.float64)) if numbers[name] else column
+                for name, column in value.columns.items()
+            }
+        return fields
     raise TypeError(f"{type(value).__name__} does not belong on the page")
 
 
-def policy(script: str) -> str:
-    """Return the policy of a page: only this script may run, whatever else gets there, and nothing may be loaded."""
-    fingerprint = base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii")
+PLOTLY = "plotly-basic-4.1.1.min.js"
+"""The charts' library, from the npm package plotly.js-basic-dist-min of that version (MIT, see its LICENSE)."""
+PLOTLY_SHA256 = "99784e3abfb07b142a15e521a439e6d9addceadb3f79553fd24c72774f0649ba"
+"""Of the file as the package has it."""
+
+
+@lru_cache(maxsize=1)
+def plotly() -> str:
+    """Return the text of the charts' library."""
+    return (resources.files("pareto_monoped.report") / "plotly" / PLOTLY).read_text(encoding="utf-8")
+
+
+def policy(*scripts: str) -> str:
+    """Return the policy of a page: only these scripts may run, whatever else gets there, and nothing may be loaded."""
+    prints = (base64.b64encode(hashlib.sha256(one.encode("utf-8")).digest()).decode("ascii") for one in scripts)
+    allowed = " ".join(f"'sha256-{one}'" for one in prints)
     return (
-        f"default-src 'none'; script-src 'sha256-{fingerprint}'; style-src 'unsafe-inline'; "
+        f"default-src 'none'; script-src {allowed}; style-src 'unsafe-inline'; "
         "img-src data: blob:; base-uri 'none'; form-action 'none'"
     )
 

@@ -259,6 +259,8 @@ class StudyCard:
     foot_radius_m: float
     provenance: Sequence[Sequence[str]]
     reproduce: str
+    #: Measure -> variable -> its importance over all trials, see ``analysis.sensitivity.importances``
+    importances: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     robust: Robust | None = None  #: designs under uncertainty; None where none is stored
     #: Trial number -> "variables" and "assumptions" -> its sensitivity, see ``Influences``
     sensitivity: Mapping[str, Mapping[str, Influences]] = field(default_factory=dict)

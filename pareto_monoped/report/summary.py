@@ -109,7 +109,9 @@ def notes(data: StudyData, again: "Resimulation") -> list[str]:
     """Return what the reader has to know before using the page."""
     lines = []
     done, budget = len(data.trials), data.meta.budget
-    if not data.meta.finished:
+    if not data.meta.finished and done >= budget:
+        lines.append(f"All {done} designs are simulated. The audit of the front is not finished: designs may leave it.")
+    elif not data.meta.finished:
         lines.append(
             f"Unfinished: {done} of {budget} designs are simulated. The front will still move, and it is audited only "
             "at the end."

@@ -30,7 +30,9 @@ def head(payload: Payload) -> str:
     if len(payload.studies) == 1:
         (card,) = payload.studies
         about = f'<p class="small">{safe(card.description)}</p>' if card.description else ""
-        return f'{about}<p class="summary">{safe(" ".join(card.summary))}</p>{_notes(card)}{_facts_list(card)}'
+        rest = f"{about}<p>{safe(' '.join(card.summary[1:]))}</p>{_facts_list(card)}"
+        first = f'<summary class="summary">{safe(card.summary[0])}</summary>'
+        return f'<div class="studies"><details>{first}{rest}</details></div>{_notes(card)}'
     # One line per study with the rest folded away, so that the front stays in sight.
     lines = "".join(
         f"<details><summary><b>{safe(card.label)}</b> {safe(card.summary[0])}</summary>"
@@ -266,6 +268,32 @@ def designs_table(payload: Payload) -> str:
         caption = f"{card.label}: {count} of the front{'' if whole else ', evenly along it'}."
         parts.append(html_table(heads, cells, caption=caption))
     return "\n".join(parts) or '<p class="small">There is no front yet.</p>'
+
+
+def importance_tables(payload: Payload) -> str:
+    """Return which variable decides which measure over all trials of each study, as tables in percent."""
+    quantities = {quantity.name: quantity for quantity in payload.quantities}
+    parts = []
+    for card in payload.studies:
+        names = list(card.importances)
+        variables = list(dict.fromkeys(name for shares in card.importances.values() for name in shares))
+        if not names:
+            continue
+        variables.sort(key=lambda name: -max(card.importances[one].get(name, 0.0) for one in names))
+        cells = [
+            [
+                quantities[name].label if name in quantities else name.replace("_", " "),
+                *(f"{100.0 * card.importances[one].get(name, 0.0):.0f} %" for one in names),
+            ]
+            for name in variables
+        ]
+        heads = ["variable", *(quantities[name].label for name in names)]
+        caption = (
+            f"{card.label}: which variable decides which measure over all trials, as what sets the best tenth apart "
+            "(PED-ANOVA, as in Optuna's dashboard)."
+        )
+        parts.append(html_table(heads, cells, caption=caption))
+    return "\n".join(parts)
 
 
 def _title(quantity: Quantity) -> str:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import Variable
 from pareto_monoped.measures import GOAL_NAMES, is_own
-from pareto_monoped.report.packing import column, packed_column
+from pareto_monoped.report.packing import column, packed_column, single_column
 from pareto_monoped.report.quantities import AUDIT, EVERY_TRIAL
 from pareto_monoped.report.schema import Column, Trials
 
@@ -46,7 +46,7 @@ def trial_columns(
 ) -> Trials:
     """Return the trials on the page, out of ``total``; ``numbers`` are more columns, such as numbers of gearboxes."""
     names = dict.fromkeys((*(variable.name for variable in variables), "height_m", "energy_j", *goals, *EVERY_TRIAL))
-    columns: dict[str, Column] = {name: column(values_of(trials, name)) for name in names}
+    columns: dict[str, Column] = {name: single_column(values_of(trials, name)) for name in names}
     columns |= numbers
     own = [name for name in trials.columns if is_own(name)]
     others = [name for name in (*GOAL_NAMES, *own) if name in trials.columns and name not in names]
@@ -68,7 +68,7 @@ def audit_records(audits: pd.DataFrame) -> dict[str, dict[str, Any]]:
     """Return measures, verdict and reason of each audit, by trial number; without measures that an audit has not."""
     names = [name for name in AUDIT if name in audits.columns]
     # An infinite change (the perturbed design did not jump) becomes None; the reason says it in words.
-    values = {name: column(audits[name]) for name in names}
+    values = {name: column(audits[name], 4) for name in names}
     there = {name: audits[name].notna().to_numpy() for name in names}
     reasons = audits["reason"].tolist() if "reason" in audits.columns else [""] * len(audits)
     good = zip(audits["well_conditioned"], reasons, strict=True)

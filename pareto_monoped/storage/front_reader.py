@@ -56,6 +56,22 @@ def read_front(db: StudyPlace) -> StudyFront:
         )
 
 
+def least_stored(db: StudyPlace, name: str, height_m: float) -> float | None:
+    """Return the least of a measure in the feasible trials of at least a height; None where none has a value.
+
+    Trials that failed their audit do not count. It is read by one statement, without a check of the running hash.
+    """
+    with undamaged(db), storage_of(db).reading() as connection:
+        if name not in connection.columns("monoped_trials"):
+            return None
+        found = connection.execute(
+            f"SELECT min({name}) FROM monoped_trials WHERE state = 'feasible' AND height_m >= :height_m AND trial NOT "
+            "IN (SELECT trial FROM monoped_audits WHERE well_conditioned = 0)",
+            {"height_m": height_m},
+        ).fetchone()
+    return None if found[0] is None else float(found[0])
+
+
 def _kept(connection: Connection, db: StudyPlace) -> StudyFront:
     checked = checked_front(connection, db)
     meta = checked.meta

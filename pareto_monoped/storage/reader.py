@@ -4,7 +4,7 @@ Stored rows become a data frame with every column there is, the names of the mot
 from those that databases of earlier versions have.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
@@ -19,8 +19,9 @@ from pareto_monoped.definition.study import Study, study_from_dict
 from pareto_monoped.definition.variables import MOTOR_KEYS, names_of
 from pareto_monoped.design import DEFAULTS, PAPER_MOTOR
 from pareto_monoped.errors import DatabaseError
-from pareto_monoped.pareto.front import front_mask
 from pareto_monoped.pareto.objectives import Objectives, ReferencePoint
+from pareto_monoped.pareto.pick import front_within
+from pareto_monoped.pareto.selectors import Condition
 from pareto_monoped.storage.base import undamaged
 from pareto_monoped.storage.columns import COLUMNS, LATER, REQUIRED
 from pareto_monoped.storage.meta import StudyMeta, meta_of_rows, motor_keys
@@ -283,18 +284,28 @@ class StudyData:
         """Corner from which the study's hypervolume is measured."""
         return self.study.reference_point
 
-    def front(self, include_ill_conditioned: bool = False, objectives: Objectives | None = None) -> pd.DataFrame:
+    @property
+    def sound(self) -> pd.DataFrame:
+        """The feasible trials that have not failed their audit: all that may be chosen."""
+        feasible = (self.trials["state"] == "feasible").to_numpy()
+        return self.trials[feasible & ~self.trials["trial"].isin(self.ill_conditioned).to_numpy()]
+
+    def front(
+        self,
+        include_ill_conditioned: bool = False,
+        objectives: Objectives | None = None,
+        conditions: Sequence[Condition] = (),
+    ) -> pd.DataFrame:
         """Return the non-dominated feasible trials by the first objective, from its least value to its greatest.
 
-        Trials dominate each other under the study's own objectives unless others are given. Without ill-conditioned
-        trials, which failed their audit, trials that those dominate may enter.
+        Trials dominate each other under the study's own objectives unless others are given. Those that do not meet the
+        conditions do not count, and neither do ill-conditioned ones, which failed their audit: trials that they
+        dominate may enter.
         """
-        eligible = (self.trials["state"] == "feasible").to_numpy()
-        if not include_ill_conditioned:
-            eligible = eligible & ~self.trials["trial"].isin(self.ill_conditioned).to_numpy()
+        rows = self.trials[self.trials["state"] == "feasible"] if include_ill_conditioned else self.sound
         chosen = objectives or self.study.objectives
-        mask = front_mask(self.trials[list(chosen.names)].to_numpy(dtype=np.float64), chosen, eligible)
-        return self.trials[mask].sort_values(chosen.names[0], kind="stable", ignore_index=True)
+        found = rows[front_within(rows, conditions, chosen)]
+        return found.sort_values(chosen.names[0], kind="stable", ignore_index=True)
 
 
 def read_trials(db: StudyPlace) -> Iterator[pd.DataFrame]:

@@ -3,4 +3,4 @@
 Order of imports, lowest first: own_functions, simulator; audits, outside, session; pymoo_problem, run.
 """
 
-__all__ = ["own_functions", "run", "session", "simulator"]
+__all__ = ["audits", "own_functions", "run", "session", "simulator"]

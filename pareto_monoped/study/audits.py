@@ -25,15 +25,8 @@ def audit_front(db: StudyPlace, store: Store, simulator: Simulator, notify: Call
     """Audit every design on the front that has no audit yet, and store the audits.
 
     A design that fails its audit leaves the front, and designs that it dominated may enter, so the audit repeats until
-    every design on the front has passed. MuJoCo makes every jump again, whatever engine the study has
-    (``audit.judge``). For most designs one coarse jump shows that they pass the rest (``jump.screen``). The others have
-    a brief audit: ``simulate --audit`` makes the full one.
+    every design on the front has passed.
     """
-    from pareto_monoped.jump.audit import ONLY_IN_FULL, audit, judge
-    from pareto_monoped.jump.screen import screened
-    from pareto_monoped.jump.variations import take
-
-    calibration, workers, executor = simulator.calibration, simulator.evaluator.workers, simulator.evaluator.executor
     while True:
         data = read_study(db)
         front = data.front()
@@ -41,29 +34,44 @@ def audit_front(db: StudyPlace, store: Store, simulator: Simulator, notify: Call
         if len(fresh) == 0:
             return
         notify(f"auditing {len(fresh)} designs of the front")
-        for kit, rows in _chunks(data, fresh):
-            known, designs = _known(rows), _designs(rows)
-            found = screened(designs, kit, calibration, known, workers=workers, executor=executor)
-            judged = judge(designs, kit, calibration, known, workers=workers, executor=executor)
-            clear = found.clear & judged.clear(known)
-            columns = {k: values[clear] for k, values in (found.as_columns() | judged.as_columns()).items()}
-            _store(store, rows[clear], np.ones(clear.sum(), dtype=bool), columns | {"reason": np.full(clear.sum(), "")})
-            unclear = np.flatnonzero(~clear)
-            for first in range(0, len(unclear), _AUDITED):
-                places = unclear[first : first + _AUDITED]
-                part = rows.iloc[places]
-                audits = audit(
-                    designs[places],
-                    kit,
-                    calibration,
-                    workers=workers,
-                    executor=executor,
-                    known=take(known, places),
-                    judged=take(judged, places),
-                    brief=True,
-                ).as_columns()
-                good = audits.pop("well_conditioned")
-                _store(store, part, good, {name: audits[name] for name in audits if name not in ONLY_IN_FULL})
+        audit_trials(data, fresh, store, simulator)
+
+
+def audit_trials(data: StudyData, trials: pd.DataFrame, store: Store, simulator: Simulator) -> None:
+    """Audit trials of a study, and store the audits.
+
+    MuJoCo makes every jump again, whatever engine the study has (``audit.judge``). For most designs one coarse jump
+    shows that they pass the rest (``jump.screen``). The others have a brief audit: ``simulate --audit`` makes the full
+    one.
+    """
+    from pareto_monoped.jump.audit import ONLY_IN_FULL, audit, judge
+    from pareto_monoped.jump.screen import screened
+    from pareto_monoped.jump.variations import take
+
+    calibration, workers, executor = simulator.calibration, simulator.evaluator.workers, simulator.evaluator.executor
+    for kit, rows in _chunks(data, trials):
+        known, designs = _known(rows), _designs(rows)
+        found = screened(designs, kit, calibration, known, workers=workers, executor=executor)
+        judged = judge(designs, kit, calibration, known, workers=workers, executor=executor)
+        clear = found.clear & judged.clear(known)
+        columns = {k: values[clear] for k, values in (found.as_columns() | judged.as_columns()).items()}
+        _store(store, rows[clear], np.ones(clear.sum(), dtype=bool), columns | {"reason": np.full(clear.sum(), "")})
+        unclear = np.flatnonzero(~clear)
+        for first in range(0, len(unclear), _AUDITED):
+            places = unclear[first : first + _AUDITED]
+            part = rows.iloc[places]
+            audits = audit(
+                designs[places],
+                kit,
+                calibration,
+                workers=workers,
+                executor=executor,
+                known=take(known, places),
+                judged=take(judged, places),
+                brief=True,
+            ).as_columns()
+            good = audits.pop("well_conditioned")
+            _store(store, part, good, {name: audits[name] for name in audits if name not in ONLY_IN_FULL})
 
 
 def _designs(rows: pd.DataFrame) -> NDArray[np.float64]:

@@ -20,6 +20,9 @@ DEFAULT_BLOCKS = 256
 """Base samples; each takes d + 2 jumps. The 95 percent interval of a total index of 0.5 is then about +-0.1."""
 FEWEST_BLOCKS = 32
 """Fewest base samples that are left after failures. Our own choice: below, intervals are as wide as the indices."""
+WIDE = 0.1
+"""Half an interval from which on a share is given as the interval alone. Our own choice: with 256 base samples, which
+are the default, shares are known to 0.1."""
 _RESAMPLES, _INTERVAL = 200, (2.5, 97.5)
 """Bootstrap resamples for the intervals, and their percentiles: 200 are enough for standard errors (Efron 1993)."""
 
@@ -195,6 +198,14 @@ class Influence(Strict):
     total: Number  #: total index: the share of the measure's variance that would go with the factor
     #: Half the width of the 95 percent interval of ``total``
     error: Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+
+    @property
+    def share_text(self) -> str:
+        """Return the share in percent, such as "31+-8"; its interval, such as "75..100", where that is wide."""
+        low, high = (100.0 * min(max(self.total + side * self.error, 0.0), 1.0) for side in (-1.0, 1.0))
+        if self.error > WIDE or self.total > 1.0:
+            return f"{low:.0f}..{high:.0f}"
+        return f"{100.0 * self.total:.0f}+-{100.0 * self.error:.0f}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

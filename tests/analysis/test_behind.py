@@ -7,8 +7,9 @@ import pandas as pd
 import pytest
 from hypothesis import given
 
-from pareto_monoped.analysis.choices import better_than, numbered, with_numbered
+from pareto_monoped.analysis.choices import better_than, choose, numbered
 from pareto_monoped.cli import _run as cli
+from pareto_monoped.errors import SelectionError
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.pareto.selectors import Among, Condition, Knee, Trial
 from pareto_monoped.storage.reader import read_study
@@ -50,15 +51,13 @@ def test_only_a_number_adds_a_trial(db):
     assert numbered(Knee()) is None
     for selector, added in (
         (Trial(number=2), [2]),
-        (Among(conditions=(LIGHT,), chooser=Trial(number=1)), [1]),
         (Trial(number=0), []),
         (Knee(), []),
-        (None, []),
-        (Trial(number=3), []),  # infeasible
-        (Trial(number=4), []),  # no jump
-        (Trial(number=99), []),
     ):
-        assert with_numbered(data, front, selector)["trial"].tolist() == [0, *added]
+        assert choose(data, selector, notify=print).rows["trial"].tolist() == [0, *added]
+    for number in (3, 4, 99):  # infeasible, no jump, not there
+        with pytest.raises(SelectionError, match=f"trial = {number}: must be on the front, which has trials 0"):
+            choose(data, Trial(number=number), notify=print)
 
 
 def test_a_trial_that_failed_its_audit_is_not_chosen(db):
@@ -66,7 +65,8 @@ def test_a_trial_that_failed_its_audit_is_not_chosen(db):
 
     data = read_study(db)
     failed = replace(data, audits=pd.DataFrame({"trial": [1], "well_conditioned": [False]}))
-    assert with_numbered(failed, failed.front(), Trial(number=1))["trial"].tolist() == [0]
+    with pytest.raises(SelectionError, match="trials 0"):
+        choose(failed, Trial(number=1), notify=print)
 
 
 def test_pick_takes_it_and_says_what_is_better(db, capsys):

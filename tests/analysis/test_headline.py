@@ -42,7 +42,7 @@ def test_the_papers_design_stands_beside_the_fronts(simulated):
         ("paper's Case C, as published", 0.8, 15.36),
         ("paper's Case C, simulated here", height, simulated["energy_j"]),
         ("front: at least that height, trial 3", height + 0.01, 30.0),
-        ("front: knee, trial 7", 0.7, 10.0),
+        ("front: exported, trial 7", 0.7, 10.0),
     ]
     rises = [(row.rise_m, row.above_standing_m) for row in rows]
     assert np.isnan(rises[0]).all()
@@ -52,13 +52,13 @@ def test_the_papers_design_stands_beside_the_fronts(simulated):
 
 def test_a_study_without_rises_has_the_same_lines(simulated):
     rows = headline(study((7, 0.7, 10.0), (9, simulated["height_m"] + 0.1, 50.0)), 7)
-    assert [row.label for row in rows[2:]] == ["front: at least that height, trial 9", "front: knee, trial 7"]
+    assert [row.label for row in rows[2:]] == ["front: at least that height, trial 9", "front: exported, trial 7"]
     assert np.isnan(rows[2].rise_m)
 
 
 def test_a_front_below_the_papers_height_has_no_design_for_it():
     labels = [row.label for row in headline(study((7, 0.7, 10.0)), 7)]
-    assert labels[2:] == ["front: knee, trial 7"]
+    assert labels[2:] == ["front: exported, trial 7"]
 
 
 def test_with_several_motors_every_design_names_its_own(simulated):
@@ -66,5 +66,5 @@ def test_with_several_motors_every_design_names_its_own(simulated):
     assert labels == [
         "paper's Case C, as published",
         "paper's Case C, simulated here with U8",
-        "front: knee, trial 7, U10",
+        "front: exported, trial 7, U10",
     ]

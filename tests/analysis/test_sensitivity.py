@@ -3,12 +3,13 @@
 import json
 import shutil
 import sqlite3
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from pareto_monoped.analysis import sensitivity as module
-from pareto_monoped.analysis.sensitivity import sensitivity
+from pareto_monoped.analysis.sensitivity import importances, sensitivity
 from pareto_monoped.analysis.verify import verify
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.definition.study import study_from_dict
@@ -169,10 +170,17 @@ def test_the_command_prints_tables_of_80_columns_and_writes_a_chart(db, made, tm
         assert one.factor.text in line
         influence = one.measures["height_m"]
         assert f"{1000.0 * influence.change:+.1f}" in line
-        assert f"{100.0 * influence.total:.0f}+-{100.0 * influence.error:.0f}" in line
-    made_first = next(one for one in ranked if one.factor.tolerance)
+        ends = [min(max(influence.total + k * influence.error, 0.0), 1.0) for k in (-1, 1)]
+        wide = ends[1] == 1.0 or influence.error > 0.1
+        middle = f"{100.0 * influence.total:.0f}+-{100.0 * influence.error:.0f}"
+        assert (f"{100.0 * ends[0]:.0f}..{100.0 * ends[1]:.0f}" if wide else middle) in line
+    made_first, second = [one for one in ranked if one.factor.tolerance][:2]
     words = " ".join(" ".join(lines).split())
     assert f"the manufacturing tolerance that matters most: for height {made_first.factor.label}" in words
+    pair = (made_first.measures["height_m"], second.measures["height_m"])
+    low, high = pair[0].total - pair[0].error, pair[1].total + pair[1].error
+    alike = f"{made_first.factor.label} or {second.factor.label}, which 32 samples do not tell apart"
+    assert (f"for height {alike}" in words) == (low < high)
     text = chart.read_text(encoding="utf-8")
     assert "plotly" in text
     assert all(one.factor.label in text for one in (*variables.factors, *assumptions.factors))
@@ -189,3 +197,23 @@ def test_the_design_can_be_chosen_as_elsewhere(db, made, capsys):
     energy = float(read_study(db).trials.set_index("trial").loc[trial, "energy_j"])
     assert cli(["sensitivity", str(db), "--max-energy", str(energy), "--samples", "32", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["trial"] == trial
+
+
+def test_the_importance_of_a_variable_is_seen_over_the_whole_study(tmp_path):
+    """Each measure is made of one variable alone; a third variable decides nothing."""
+    from tests.study.support import made_database, made_evaluations, made_generation, made_study
+
+    study = made_study(evaluations=400)
+    jumps = made_evaluations(np.full(400, 0.9), np.full(400, 20.0))
+    made_database(tmp_path / "s.db", [made_generation(study, 0, 0, jumps)], study)
+    data = read_study(tmp_path / "s.db")
+    rng = np.random.default_rng(1)
+    drawn = {name: rng.uniform(0.3, 0.5, 400) for name in ("thigh_length_m", "shank_length_m", "damping_n_s_per_m")}
+    trials = data.trials.assign(**drawn)
+    trials = trials.assign(height_m=trials["thigh_length_m"], energy_j=-trials["shank_length_m"])
+    found = importances(replace(data, trials=trials), ["height_m", "energy_j", "drift_m"])
+    assert max(found["height_m"], key=found["height_m"].get) == "thigh_length_m"
+    assert max(found["energy_j"], key=found["energy_j"].get) == "shank_length_m"
+    assert found["height_m"]["thigh_length_m"] > 0.9
+    assert sum(found["energy_j"].values()) == pytest.approx(1.0)
+    assert importances(replace(data, trials=trials.iloc[:20]), ["height_m"]) == {}

@@ -35,13 +35,32 @@ def fronts(draw, objectives=HEIGHT_AND_ENERGY):
     return pd.DataFrame({"trial": trials, **columns})
 
 
-def losses(front, objectives):
-    """Rows of losses from 0, the best, to 1, the worst, by plain Python."""
+def not_dominated(designs, objectives):
+    """The designs that no other one betters, by the definition; of equal ones the first."""
+
+    def costs(record):
+        return [-record[one.name] if one.direction == "maximise" else record[one.name] for one in objectives.measures]
+
+    points = [costs(record) for record in designs.to_dict(orient="records")]
+    kept = [
+        not any(
+            all(a <= b for a, b in zip(other, own, strict=True)) and (other != own or j < i)
+            for j, other in enumerate(points)
+            if j != i
+        )
+        for i, own in enumerate(points)
+    ]
+    return designs[np.array(kept, dtype=bool)]
+
+
+def losses(front, objectives, whole=None):
+    """Rows of losses from 0, the best of the whole front, to 1, its worst, by plain Python."""
     rows = []
+    whole = front if whole is None else whole
     for record in front.to_dict(orient="records"):
         row = []
         for entry in objectives.measures:
-            column = [float(value) for value in front[entry.name]]
+            column = [float(value) for value in whole[entry.name]]
             low, high = min(column), max(column)
             share = (record[entry.name] - low) / (high - low) if high > low else 0.0
             row.append((1.0 - share if high > low else 0.0) if entry.direction == "maximise" else share)

@@ -1,6 +1,8 @@
 """Every way to choose against brute force on random fronts, and against pymoo."""
 
 import math
+import re
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -15,6 +17,7 @@ from pareto_monoped.pareto.selectors import (
     Among,
     Compromise,
     Condition,
+    Extreme,
     Knee,
     MaxEnergy,
     Nearest,
@@ -23,7 +26,7 @@ from pareto_monoped.pareto.selectors import (
     Weights,
 )
 from pareto_monoped.pareto.trade_offs import NEIGHBOURHOOD, tradeoff
-from tests.pareto.fronts import THREE, fronts, losses
+from tests.pareto.fronts import THREE, fronts, losses, not_dominated
 
 
 def meets(record, condition):
@@ -40,7 +43,7 @@ def chosen(front, selector, objectives):
 @pytest.mark.parametrize("objectives", [HEIGHT_AND_ENERGY, THREE], ids=["two", "three"])
 @given(data=st.data())
 def test_choosers_agree_with_brute_force(objectives, data):
-    front = data.draw(fronts(objectives))
+    front = not_dominated(data.draw(fronts(objectives)), objectives)
     loss, m = losses(front, objectives), len(objectives.names)
     row = chosen(front, Compromise(values=(1.0, 2.0, 0.5)[:m]), objectives)
     distance = [math.sqrt(sum((w * x) ** 2 for w, x in zip((1.0, 2.0, 0.5), one, strict=False))) for one in loss]
@@ -69,7 +72,8 @@ def bargain(loss, i):
 @given(front=fronts(), height=st.floats(0.4, 1.1), energy=st.floats(0.4, 1.1))
 def test_the_nearest_has_the_least_greatest_shortfall(front, height, energy):
     row = chosen(front, Nearest(wish={"height_m": height, "energy_j": energy}), HEIGHT_AND_ENERGY)
-    extents = [np.ptp(front[name]) or 1.0 for name in HEIGHT_AND_ENERGY.names]
+    whole = not_dominated(front, HEIGHT_AND_ENERGY)
+    extents = [np.ptp(whole[name]) or np.ptp(front[name]) or 1.0 for name in HEIGHT_AND_ENERGY.names]
     worst = [
         max((height - h) / extents[0], (e - energy) / extents[1])
         for h, e in zip(front["height_m"], front["energy_j"], strict=True)
@@ -106,7 +110,8 @@ def test_the_tradeoff_is_that_of_pymoo():
     for i in range(len(loss)):
         change = loss[[j for j in finder.find(i) if j != i]] - loss[i]
         worth.append(float((np.maximum(change, 0.0).sum(axis=1) / np.maximum(-change, 0.0).sum(axis=1)).min()))
-    scored = tradeoff(front[["height_m", "energy_j"]].to_numpy(), HEIGHT_AND_ENERGY)
+    values = front[["height_m", "energy_j"]].to_numpy()
+    scored = tradeoff(values, values, HEIGHT_AND_ENERGY)
     assert scored.score == pytest.approx(worth)
     assert pick(front, Tradeoff()).trial == int(np.argmax(worth))
 
@@ -140,28 +145,48 @@ def test_conditions_agree_with_brute_force(front, conditions):
             pick(front, selector)
         message = str(caught.value)
         assert "\n" not in message
-        impossible = [one for one in conditions if not any(meets(record, one) for record in records)]
-        if impossible:
-            column = front[impossible[0].name]
-            assert f"{column.max() if impossible[0].side == 'min' else column.min():.4f}" in message
-        else:
-            named = next(record for record in records if f"trial {record['trial']} " in message)
-            assert shortfall(named, conditions, front) == pytest.approx(
-                min(shortfall(record, conditions, front) for record in records)
-            )
+        named = next(record for record in records if f"trial {record['trial']} " in message)
+        assert shortfall(named, conditions, front) == pytest.approx(
+            min(shortfall(record, conditions, front) for record in records)
+        )
+        said = re.findall(r"(min|max) (\w+) = (\S+)", message.partition("; met with ")[2])
+        wanted = giving(records, conditions)
+        assert [(side, name) for side, name, _ in said] == [(one.side, one.name) for one, _ in wanted]
+        for (_, _, value), (one, best) in zip(said, wanted, strict=True):
+            assert float(value) == pytest.approx(best, rel=2e-5)
+            assert meets({one.name: best}, replace(one, value=float(value)))
         return
     limited = {one.name for one in conditions}
-    if "height_m" not in limited or ({"height_m", "energy_j"} <= limited and conditions[0].name != "height_m"):
+    if "height_m" not in limited:
         best = max(able, key=lambda record: (record["height_m"], -record["energy_j"]))
     else:
         best = min(able, key=lambda record: (record["energy_j"], -record["height_m"]))
     found = next(record for record in records if record["trial"] == pick(front, selector).trial)
     assert found in able
     assert [found[name] for name in HEIGHT_AND_ENERGY.names] == [best[name] for name in HEIGHT_AND_ENERGY.names]
-    for chooser in (Knee(), Tradeoff(), Weights(values=(1.0, 1.0)), Nearest(wish={"mass_kg": 0.7})):
-        assert pick(front, Among(conditions=tuple(conditions), chooser=chooser)).trial in {
-            record["trial"] for record in able
-        }
+    inside = not_dominated(pd.DataFrame(able), HEIGHT_AND_ENERGY)
+    assert f"of the {len(inside)} designs" in pick(front, selector).why
+    whole, by = not_dominated(front, HEIGHT_AND_ENERGY), inside.set_index("trial")
+    loss = pd.Series(losses(inside, HEIGHT_AND_ENERGY, whole).sum(axis=1), index=by.index)
+    for chooser in (Knee(), Weights(values=(1.0, 1.0))):
+        trial = pick(front, Among(conditions=tuple(conditions), chooser=chooser)).trial
+        assert loss[trial] == pytest.approx(loss.min(), abs=1e-12)
+    assert pick(front, Among(conditions=tuple(conditions), chooser=Tradeoff())).trial in by.index
+    least = pick(front, Among(conditions=tuple(conditions), chooser=Extreme(name="mass_kg", most=False))).trial
+    best = min(able, key=lambda record: (record["mass_kg"], -record["height_m"], record["energy_j"]))
+    same = [r["trial"] for r in able if all(r[n] == best[n] for n in ("mass_kg", "height_m", "energy_j"))]
+    assert least in same
+
+
+def giving(records, conditions):
+    """What the message offers: conditions, each with the value that the others would leave, by plain Python."""
+    offered = []
+    for k, one in enumerate(conditions):
+        others = [other for j, other in enumerate(conditions) if j != k]
+        left = [record[one.name] for record in records if all(meets(record, other) for other in others)]
+        if left:
+            offered.append((one, max(left) if one.side == "min" else min(left)))
+    return offered
 
 
 def shortfall(record, conditions, front):
@@ -175,7 +200,8 @@ def shortfall(record, conditions, front):
 
 @given(front=fronts())
 def test_a_condition_that_the_choice_meets_does_not_change_it(front):
-    for chooser in (Knee(), Tradeoff(), Weights(values=(1.0, 1.0)), Compromise(values=(1.0, 2.0))):
+    nearest = Nearest(wish={"height_m": 0.8, "mass_kg": 0.7})
+    for chooser in (Knee(), Weights(values=(1.0, 1.0)), Compromise(values=(1.0, 2.0)), nearest):
         alone = pick(front, chooser)
         mass = float(front.loc[front["trial"] == alone.trial, "mass_kg"].iloc[0])
         condition = Condition(name="mass_kg", side="max", value=mass)
@@ -212,8 +238,9 @@ def test_the_nearest_design_is_named_where_none_meets_all():
     with pytest.raises(SelectionError) as caught:
         pick(FRONT, Among(conditions=conditions))
     assert str(caught.value) == (
-        "min-height = 0.8 m, max energy_j = 11 J: no design on the front meets all; the nearest is trial 2 (0.900 m "
-        "on 12.00 J) with energy 12 J; relax a condition, or run the study longer"
+        "min-height = 0.8 m, max energy_j = 11 J: no stored design meets all; the nearest is trial 2 (0.900 m "
+        "on 12.00 J) with energy 12 J; met with min-height = 0.6 m (0.2 m less) or max energy_j = 12 J (1 J more), or "
+        "run the study longer"
     )
 
 
@@ -234,7 +261,10 @@ def test_the_greatest_shortfall_decides_which_design_is_nearest():
             Among(conditions=(Condition(name="mass_kg", side="max", value=4.1),), chooser=Trial(number=2)),
             ["trial = 2", "meet the conditions", "1, 3"],
         ),
-        (Among(conditions=(Condition(name="knee_ratio", side="min", value=7.0),)), ["knee_ratio", "at most 6.1000"]),
+        (
+            Among(conditions=(Condition(name="knee_ratio", side="min", value=7.0),)),
+            ["knee_ratio", "min knee_ratio = 6.1 (0.9 less)"],
+        ),
     ],
 )
 def test_what_cannot_be_had_is_refused(selector, words):

@@ -33,6 +33,14 @@ def test_it_is_the_cheapest_design_a_step_higher(objectives, data):
         assert step.costs == pytest.approx(expected)
 
 
+def test_between_few_designs_the_step_alone_is_paid():
+    front = pd.DataFrame({"trial": [1, 2], "height_m": [0.8, 0.85], "energy_j": [10.0, 13.5]})
+    step = one_more(front, 1, HEIGHT_AND_ENERGY, between=True)
+    assert step.costs == pytest.approx((3.5 / 5.0,))
+    assert "costs 0.7 J of energy (on the straight line to trial 2: 0.850 m on 13.50 J)" in step.text()
+    assert one_more(front, 1, HEIGHT_AND_ENERGY).costs == pytest.approx((3.5,))
+
+
 def test_a_design_exactly_a_step_away_counts():
     front = pd.DataFrame({"trial": [1, 2, 3], "height_m": [0.8, 0.8 + 0.01, 0.9], "energy_j": [10.0, 10.5, 20.0]})
     assert one_more(front, 1, HEIGHT_AND_ENERGY).text() == (

@@ -85,9 +85,9 @@ def payload(source):
 
 
 def unpacked(text: str) -> list[float]:
-    """Read as a browser does: three bytes, low byte first, are the upper ones of a number in single precision."""
+    """Read as a browser does: numbers in single precision, low byte first."""
     raw = base64.b64decode(text, validate=True)
-    return [struct.unpack("<f", b"\0" + raw[i : i + 3])[0] for i in range(0, len(raw), 3)]
+    return [number for (number,) in struct.iter_unpack("<f", raw)]
 
 
 def cut(data: StudyData, keep: np.ndarray, *, finished: bool = False, state: str | None = None) -> StudyData:
@@ -138,8 +138,9 @@ class Tab:
         self.complaints.clear()
         self.requests.clear()
         self.page.goto(file.as_uri() + fragment)
-        self.page.wait_for_function("() => document.getElementById('front-chart').data !== undefined")
+        self.page.wait_for_function("() => document.getElementById('front-chart').layers !== undefined")
         self.page.wait_for_selector("#parallel-chart canvas")
+        self.page.evaluate("document.querySelector('.fold').open = true")
 
     def look(self, width: int = 1440, height: int = 900, scheme: str = "light") -> None:
         """A screen of this size, with these colours."""
@@ -151,6 +152,7 @@ class Tab:
         """The view as it was at first, with the first design of the front selected."""
         self.look()
         self.page.evaluate("document.getElementById('reset').click()")
+        self.page.evaluate("document.querySelector('.fold').open = true")
         self.page.evaluate("window.scrollTo(0, 0)")
         self.page.focus("#front-chart")
         self.page.keyboard.press("Home")
@@ -170,7 +172,7 @@ class Tab:
             self.page.evaluate(
                 """([name, i]) => {
                     const gd = document.getElementById("front-chart");
-                    const t = gd.data.find((t) => t.name === name), box = gd.getBoundingClientRect();
+                    const t = gd.layers.find((t) => t.name === name), box = gd.getBoundingClientRect();
                     const [x, y] = gd.chart.at(t.x[i], t.y[i]);
                     return [box.left + x, box.top + y];
                 }""",
@@ -192,7 +194,7 @@ class Tab:
         """What hovering shows over each point of a trace of the front chart."""
         return self.page.evaluate(
             """(name) => {
-                const t = document.getElementById("front-chart").data.find((t) => t.name === name);
+                const t = document.getElementById("front-chart").layers.find((t) => t.name === name);
                 return t.x.map((_, i) => t.text(i));
             }""",
             trace,

@@ -69,7 +69,7 @@ def test_the_keyboard_alone_asks_walks_zooms_sorts_and_keeps(file, open_tab, wid
     keys = tab.page.keyboard
     focused(tab, "#ask-height")
     keys.type("0.7")
-    assert "of the front" in tab.text("#ask-answer")
+    assert "on the front" in tab.text("#ask-answer")
     focused(tab, "#undo")
     focused(tab, ".fold summary")
     if not tab.page.evaluate("document.querySelector('.fold').open"):

@@ -24,7 +24,7 @@ def tab(shared):
 def layer(tab, name):
     return tab.page.evaluate(
         """(name) => {
-            const gd = document.getElementById("front-chart"), t = gd.data.find((t) => t.name === name);
+            const gd = document.getElementById("front-chart"), t = gd.layers.find((t) => t.name === name);
             return t && { x: t.x, y: t.y, color: t.marker?.color, size: t.marker?.size, ramp: t.marker?.ramp,
                 ends: t.ends, px: [...t.px], py: [...t.py] };
         }""",

@@ -69,7 +69,7 @@ def shown(mixed):
 
 def traces(tab, name):
     return tab.page.evaluate(
-        """(name) => document.getElementById("front-chart").data.filter((t) => t.name === name)
+        """(name) => document.getElementById("front-chart").layers.filter((t) => t.name === name)
             .map((t) => ({ x: t.x, y: t.y, text: t.x.map((_, i) => t.text(i)) }))[0]""",
         name,
     )
@@ -236,18 +236,6 @@ def affine(pixels, values):
     return slope, start
 
 
-def paths(tab, chart):
-    """Curves of a chart over time: colour, width, dashes, and points in pixels."""
-    return [
-        (colour, float(width), dash, np.array([[float(v) for v in p.split()] for p in d[1:].split("L")]))
-        for colour, width, dash, d in tab.page.eval_on_selector_all(
-            f"#time-charts svg >> nth={chart} >> path",
-            """(all) => all.map((path) => ["stroke", "stroke-width", "stroke-dasharray", "d"]
-                .map((name) => path.getAttribute(name)))""",
-        )
-    ]
-
-
 def knee_jump(tab, mixed):
     """Select the knee of the front; its jump in SI units and its row."""
     card = mixed.card
@@ -256,45 +244,54 @@ def knee_jump(tab, mixed):
     return _states_data(card, row), row
 
 
+def over_time(tab):
+    """Of each chart over time its lines as x and y, and its level lines, as plotly draws them."""
+    tab.to_chart("time-charts")
+    return tab.page.evaluate(
+        """() => {
+            const { data, layout } = document.getElementById("time-charts");
+            return [0, 1, 2, 3, 4].map((k) => {
+                const axis = `y${k ? k + 1 : ""}`, own = (one) => (one.yaxis ?? one.yref) === axis;
+                return [data.filter(own).map(({ x, y }) => ({ x, y })), layout.shapes.filter(own).map(({ y0 }) => y0)];
+            });
+        }"""
+    )
+
+
 def test_the_curves_over_time_are_the_jumps(tab, mixed):
     j, row = knee_jump(tab, mixed)
     columns = mixed.card.trials.columns
-    assert f"lift-off at {j['lift_off_s']:.3f} s" in tab.text("#time-charts")
-    curves = [[path for path in paths(tab, chart) if path[2] == "none"] for chart in range(5)]
-    names = [
-        {"var(--hip)": "hip_motor_torque_n_m", "var(--knee)": "knee_motor_torque_n_m"},
-        {"var(--hip)": "hip_rad_per_s", "var(--knee)": "knee_rad_per_s"},
-        {"var(--hip)": "hip_rad", "var(--knee)": "knee_rad"},
-        {"var(--c1)": "contact_z_n"},
+    charts = over_time(tab)
+    assert f"lift-off at {j['lift_off_s']:.3f} s" in tab.text("#time-legend")
+    sides = ("hip", "knee")
+    names = [[f"{side}_motor_torque_n_m" for side in sides], [f"{side}_rad_per_s" for side in sides]]
+    names += [[f"{side}_rad" for side in sides], ["contact_z_n"], ["base_z_m", "foot_z_m"]]
+    for (lines, _), of in zip(charts, names, strict=True):
+        *curves, lift = lines
+        assert lift["x"] == pytest.approx([j["lift_off_s"]] * 2)
+        for curve, name in zip(curves, of, strict=True):
+            scale = 180.0 / np.pi if name.endswith("_rad") else 1.0
+            assert curve["x"] == pytest.approx(j["time_s"])
+            assert curve["y"] == pytest.approx([scale * value for value in j[name]], abs=1e-6)
+    peaks = [
+        sign * mixed.payload.gearboxes[columns[f"{joint}_gearbox"][row]].peak_torque_n_m
+        for joint in sides
+        for sign in (1, -1)
     ]
-    for chart, of in zip(curves, names, strict=False):
-        assert [colour for colour, *_ in chart] == list(of)
-        for colour, _, _, points in chart:
-            affine(points[:, 0], j["time_s"])
-            assert affine(points[:, 1], j[of[colour]])[0] < 0
-    thick, thin = sorted(curves[4], key=lambda path: -path[1])
-    assert affine(thick[3][:, 1], j["base_z_m"]) == pytest.approx(affine(thin[3][:, 1], j["foot_z_m"]), rel=0.02)
-
-    for joint in ("hip", "knee"):
-        (curve,) = (path for path in curves[0] if path[0] == f"var(--{joint})")
-        slope, start = affine(curve[3][:, 1], j[f"{joint}_motor_torque_n_m"])
-        dashed = [p[3][0, 1] for p in paths(tab, 0) if p[2] != "none" and p[0] == f"var(--{joint})"]
-        peak = mixed.payload.gearboxes[columns[f"{joint}_gearbox"][row]].peak_torque_n_m
-        assert sorted(slope * y + start for y in dashed) == pytest.approx([-peak, peak], rel=0.01)
+    assert charts[0][1] == pytest.approx(peaks)
 
 
 def test_the_picture_shows_the_lift_off_and_the_vertical_line_its_moment(tab, mixed):
     j, _ = knee_jump(tab, mixed)
     end = j["time_s"][-1]
     assert float(tab.page.input_value("#scrub")) == pytest.approx(1000 * j["lift_off_s"] / end, abs=0.51)
-    points = paths(tab, 4)[0][3]
-    slope, start = affine(points[:, 0], j["time_s"])
+    over_time(tab)
+    frame = tab.page.locator("#time-charts .subplot.xy .bglayer, #time-charts .draglayer .xy rect").first.bounding_box()
     for share in (0.0, 0.6, 1.0):
         tab.page.fill("#scrub", str(round(1000 * share)))
-        cursors = tab.page.eval_on_selector_all(
-            "#time-charts svg line[stroke='var(--c4)']", "(lines) => lines.map((l) => Number(l.getAttribute('x1')))"
-        )
-        assert [slope * x + start for x in cursors] == pytest.approx([share * end] * 5, abs=0.005 * end)
+        cursor = tab.page.locator("#time-charts .cursor").bounding_box()
+        at = cursor["x"] + 0.5 * cursor["width"]
+        assert (at - frame["x"]) / frame["width"] == pytest.approx(share, abs=0.01)
 
 
 def test_the_drawn_links_hang_together_and_the_foot_is_where_it_was_simulated(tab, mixed):
@@ -403,11 +400,10 @@ def test_typed_ranges_are_in_the_units_of_their_axes_and_include_their_ends(tab,
 
     def counts(keep):
         feasible = [row for row, letter in enumerate(card.trials.state) if letter == "f"]
-        front = sum(map(keep, card.front))
-        assert 0 < front < len(card.front)
-        return (
-            f"{front} of {len(card.front)} designs on the front, {sum(map(keep, feasible))} of {len(feasible)} feasible"
-        )
+        able = [row for row in feasible if keep(row) and row not in card.ill_conditioned]
+        points = {(-columns["height_m"][row], columns["energy_j"][row]) for row in able}
+        front = sum(not any(p != q and p[0] <= q[0] and p[1] <= q[1] for p in points) for q in points)
+        return f"{front} designs on the front, {sum(map(keep, feasible))} of {len(feasible)} feasible"
 
     assert counts(lambda row: columns["thigh_length_m"][row] >= low / 1000) in tab.text("#brush-note")
     line = axis_of(tab, "thigh_length_m")
@@ -428,27 +424,23 @@ def test_points_along_the_front_are_its_designs(tab, mixed):
     payload, card, columns = mixed.payload, mixed.card, mixed.card.trials.columns
     at = len(card.front) // 3
     go_to(tab, card, at)
-    heights = [columns["height_m"][row] for row in card.front]
-    charts = tab.page.eval_on_selector_all(
-        "#along-charts svg",
-        """(charts) => charts.map((svg) => ({
-            points: [...svg.querySelectorAll("[fill-opacity]")].map((mark) => {
-                const box = mark.getBBox();
-                return [mark.tagName, box.x + box.width / 2, box.y + box.height / 2];
-            }),
-            ring: ["cx", "cy"].map((name) => Number(svg.querySelector("circle[fill=none]").getAttribute(name))),
-        }))""",
+    tab.to_chart("along-charts")
+    cells = tab.page.evaluate("document.getElementById('along-charts').cells")
+    rings = tab.page.eval_on_selector_all(
+        "#along-charts .ring", "(all) => all.map((one) => [one.style.left, one.style.top])"
     )
-    assert len(charts) == len(payload.variables)
-    for variable, chart in zip(payload.variables, charts, strict=True):
+    assert len(cells) == len(rings) == len(payload.variables)
+    assert tab.page.locator("#along-charts .subplot").count() == len(cells)
+    scales = {quantity.name: quantity.scale for quantity in payload.quantities}
+    for variable, cell, ring in zip(payload.variables, cells, rings, strict=True):
         name = variable["name"]
-        kinds, xs, ys = zip(*chart["points"], strict=True)
-        assert affine(xs, heights)[0] > 0
-        assert affine(ys, [columns[name][row] for row in card.front])[0] < 0
-        assert chart["ring"] == pytest.approx([xs[at], ys[at]], abs=0.1)
+        (points,) = cell["series"]
+        assert points["x"] == pytest.approx([columns["height_m"][row] for row in card.front])
+        assert points["y"] == pytest.approx([scales[name] * columns[name][row] for row in card.front])
         gearbox = columns.get(name.replace("_ratio", "_gearbox")) if name.endswith("_ratio") else None
         external = [gearbox is not None and payload.gearboxes[gearbox[row]].family == "ESSPG" for row in card.front]
-        assert [kind == "path" for kind in kinds] == external
+        assert [mark == "diamond" for mark in points["mark"]] == external
+        assert all(float(place.removesuffix("px")) > 0 for place in ring)
 
 
 def test_a_question_is_answered_with_the_designs_that_would_do(tab, mixed):
@@ -459,11 +451,11 @@ def test_a_question_is_answered_with_the_designs_that_would_do(tab, mixed):
     at = next(k for k in range(7, len(front)) if len(set(heights[k - 3 : k + 2])) == 5)
     tab.page.fill("#ask-height", repr(columns["height_m"][front[at]]))
     tab.expects("#subject", f"Trial {card.trials.trial[front[at]]}")
-    assert f"{len(front) - at} designs of the front meet this" in tab.text("#ask-answer")
+    assert f" this, {len(front) - at} on the front" in tab.text("#ask-answer")
     tab.page.fill("#ask-height", "")
     tab.page.fill("#ask-energy", repr(columns["energy_j"][front[at - 2]]))
     tab.expects("#subject", f"Trial {card.trials.trial[front[at - 2]]}")
-    assert f"{at - 1} designs of the front meet this" in tab.text("#ask-answer")
+    assert f" this, {at - 1} on the front" in tab.text("#ask-answer")
 
 
 def test_the_speed_is_a_share_of_real_time(tab, mixed):
@@ -491,7 +483,7 @@ def test_the_speed_is_a_share_of_real_time(tab, mixed):
 
 def test_the_gearboxes_and_links_to_choose_from_are_the_maps(tab, mixed):
     (drawn,) = mixed.payload.maps
-    chart = """(id) => document.getElementById(id).data.map(({ name, x, y, marker }) => ({ name, x, y, marker }))"""
+    chart = """(id) => document.getElementById(id).layers.map(({ name, x, y, marker }) => ({ name, x, y, marker }))"""
     for trace in tab.page.evaluate(chart, "map-chart"):
         family = trace["name"]
         points = [p for p in drawn.points if family in p.family_mass_kg]

@@ -84,7 +84,7 @@ def test_three_objectives_have_a_chart_with_a_third_as_colour(three, folder, ope
     file = written(folder, "three_objectives.html", [three])
     tab = open_tab(file)
     front = three.data.front()
-    shown = chart(tab, "gd.data.filter((t) => t.name === 'front').map((t) => [t.x, t.y, t.marker.color, t.mode])")
+    shown = chart(tab, "gd.layers.filter((t) => t.name === 'front').map((t) => [t.x, t.y, t.marker.color, t.mode])")
     ((x, y, tints, mode),) = shown
     for values, name in ((x, "electrical_energy_j"), (y, "height_m"), (tints, "mass_kg")):
         assert values == pytest.approx(front[name].tolist(), rel=1e-4)
@@ -93,7 +93,7 @@ def test_three_objectives_have_a_chart_with_a_third_as_colour(three, folder, ope
     assert chart(tab, titles) == ["energy from the battery, J", "Colour: mass, kg"]
     tab.page.select_option("#across", "mass_kg")
     assert chart(tab, titles) == ["mass, kg", "Colour: energy from the battery, J"]
-    swapped = chart(tab, "gd.data.find((t) => t.name === 'front').x")
+    swapped = chart(tab, "gd.layers.find((t) => t.name === 'front').x")
     assert swapped == pytest.approx(front["mass_kg"].tolist(), rel=1e-4)
     assert not tab.page.is_visible("[data-show=published]")
     tab.scroll_through()
@@ -117,14 +117,14 @@ def test_the_form_asks_for_the_first_two_objectives(three, folder, open_tab):
 def test_two_fronts_lie_in_one_chart_by_either_energy(two, folder, open_tab):
     file = written(folder, "two_fronts.html", two)
     tab = open_tab(file)
-    modes = "gd.data.filter((t) => t.name === 'front').map((t) => t.mode)"
+    modes = "gd.layers.filter((t) => t.name === 'front').map((t) => t.mode)"
     assert chart(tab, modes) == ["lines+markers", "markers"]
     tab.page.select_option("#across", "electrical_energy_j")
     assert chart(tab, modes) == ["markers", "lines+markers"]
-    assert chart(tab, "gd.data.filter((t) => t.name === 'published').length") == 0
-    for shown, here in zip(chart(tab, "gd.data.filter((t) => t.name === 'front').map((t) => t.x)"), two, strict=True):
+    assert chart(tab, "gd.layers.filter((t) => t.name === 'published').length") == 0
+    for shown, here in zip(chart(tab, "gd.layers.filter((t) => t.name === 'front').map((t) => t.x)"), two, strict=True):
         assert shown == pytest.approx(here.data.front()["electrical_energy_j"].tolist(), rel=1e-4)
-    assert chart(tab, "gd.data.find((t) => t.name === 'floor') !== undefined")
+    assert chart(tab, "gd.layers.find((t) => t.name === 'floor') !== undefined")
     tab.scroll_through()
     tab.quiet(file)
 
@@ -141,7 +141,7 @@ def test_no_page_is_wider_than_its_window(three, two, folder, open_tab):
 def test_the_steps_of_the_front_can_be_reached(source, folder, open_tab):
     """Between two designs the chart shows the height of the lower one: the next is reached at its own energy only."""
     tab = open_tab(written(folder, "steps.html", [source]))
-    assert chart(tab, "gd.data.find((t) => t.name === 'front').line.shape") == "hv"
+    assert chart(tab, "gd.layers.find((t) => t.name === 'front').line.shape") == "hv"
     from matplotlib.figure import Figure
 
     figure = Figure()

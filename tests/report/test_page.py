@@ -10,12 +10,15 @@ from pareto_monoped import report
 from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2
 from pareto_monoped.errors import DatabaseError, OutputError, StudyError
 from pareto_monoped.report.page import (
+    PLOTLY,
+    PLOTLY_SHA256,
     PUBLISHED_LINK_KG,
     PUBLISHED_LINK_KG_PER_M,
     SCRIPTS,
     asset,
     page,
     payload_of,
+    plotly,
     write_report,
 )
 
@@ -48,7 +51,7 @@ def text(payload):
 def test_policy_lets_exactly_the_script_of_the_page_run(text):
     scripts = Scripts(text)
     running = [content for kind, content in scripts.found if kind is None]
-    assert len(scripts.found) == 2
+    assert len(scripts.found) == 3
     prints = [base64.b64encode(hashlib.sha256(content.encode()).digest()).decode() for content in running]
     assert sorted(re.findall(r"'sha256-([^']+)'", scripts.policy)) == sorted(prints)
     assert "default-src 'none'" in scripts.policy
@@ -58,8 +61,18 @@ def test_page_is_the_same_every_time(payload, text):
     assert page(payload) == text
 
 
-def test_page_of_a_small_study_is_under_one_and_a_half_megabytes(text):
-    assert len(text.encode()) < 1.5e6
+def test_page_of_a_small_study_is_small(text):
+    """Of it, 1.2 MB are the charts' library."""
+    assert len(text.encode()) < 1.7e6
+
+
+def test_the_charts_library_is_that_of_its_package_with_its_licence():
+    folder = Path(report.__file__).parent / "plotly"
+    assert hashlib.sha256((folder / PLOTLY).read_bytes()).hexdigest() == PLOTLY_SHA256
+    assert "v4.1.1" in (folder / PLOTLY).read_text(encoding="utf-8")[:200]
+    assert (folder / "LICENSE").read_text(encoding="utf-8").startswith("MIT License")
+    # It asks for no evaluation of text, which the page's policy forbids.
+    assert not re.search(r"new Function|[^\w.]eval\(", plotly())
 
 
 def test_a_missing_database_is_refused_and_nothing_is_written(tmp_path, db):

@@ -47,7 +47,7 @@ def test_the_page_has_what_is_stored(shown, uncertain, stored):
     for name in ("height_m.p05", "energy_j.p95", "mass_kg.mean"):
         base, _, statistic = name.partition(".")
         expected = [getattr(result.measures[base], statistic) for result in known]
-        assert unpacked(card.robust.packed[name]) == pytest.approx(expected, rel=2e-5)
+        assert unpacked(card.robust.packed[name]) == pytest.approx(expected, rel=1e-6)
     assert unpacked(card.robust.packed["failed_share"]) == pytest.approx([result.failed for result in known])
     front = robust_front(uncertain.data, robust_trials(uncertain.data, stored))["trial"].tolist()
     assert [card.trials.trial[row] for row in card.robust.front] == front
@@ -127,7 +127,7 @@ def test_the_scripts_read_the_same_numbers(shown, stored, browser):
     for row, trial in enumerate(shown.studies[0].trials.trial):
         if trial in stored:
             expected = stored[trial].result.measures["height_m"].p05
-            assert (column[row], single[row]) == pytest.approx((expected, expected), rel=2e-5)
+            assert (column[row], single[row]) == pytest.approx((expected, expected), rel=1e-6)
         else:
             assert np.isnan(column[row])
             assert single[row] is None

@@ -58,4 +58,6 @@ def test_notes_tell_of_drift_bad_audits_and_an_early_end(data, resimulation):
     lines = notes(replace(less, audits=audits), replace(resimulation, drift_m=0.02))
     assert lines[0].startswith("Unfinished: 50 of 200")
     assert lines[1].startswith("2 designs were taken off the front")
+    auditing = replace(data, meta=replace(data.meta, finished=False))
+    assert notes(auditing, resimulation)[0].startswith("All 200 designs are simulated. The audit of the front is not")
     assert "up to 20.0 mm" in lines[2]

@@ -18,17 +18,6 @@ function conditionText(name, [least, most]) {
   return least !== null ? `${label} ≥ ${number(least)} ${unit}` : `${label} ≤ ${number(most)} ${unit}`;
 }
 
-// The designs on the fronts shown, as [study, row].
-function shownDesigns() { return [...state.visible].sort((a, b) => a - b).flatMap((study) => page.studies[study].front.map((row) => [study, row])); }
-
-function bestOf(designs, name, other) {
-  const value = (key, [study, row]) => page.studies[study].trials.columns[key][row] * better(key);
-  return designs.reduce((best, next) => {
-    const gain = value(name, next) - value(name, best) || value(other, next) - value(other, best);
-    return gain > 0 ? next : best;
-  });
-}
-
 function measuresInWords([study, row]) {
   const { trials, label } = page.studies[study];
   const asked = Object.keys(state.ranges).filter((name) => !page.objectives.includes(name) && !page.variables.some((v) => v.name === name));
@@ -36,54 +25,57 @@ function measuresInWords([study, row]) {
   return `trial ${trials.trial[row]}${page.studies.length > 1 ? ` of ${label}` : ""}, ${told(page.objectives, (key) => trials.columns[key][row])}${rest}`;
 }
 
-// By how much a design misses the conditions: the sum of what is missing, each as a share of its measure's extent.
-function missing([study, row], spans) {
-  let sum = 0;
-  for (const [name, [least, most]] of Object.entries(state.ranges)) {
-    const value = valueAt(study, name, row);
-    if (value === null) return Infinity;
-    sum += Math.max((least ?? value) - value, value - (most ?? value), 0) / spans[name];
-  }
-  return sum;
+// Of some designs the one that misses the conditions least, each miss as a share of its measure's extent: the least
+// greatest miss, then the least sum.
+function nearestOf({ size, stand, joined }, list) {
+  const missed = list.map(({ name, side, value }) => {
+    const values = joined((study) => columnOf(study, name)), [low, high] = extent(values);
+    return values.map((one) => (Number.isNaN(one) ? Infinity : Math.max(side ? one - value : value - one, 0) / (high - low || 1)));
+  });
+  const [worst, sum] = [(i) => Math.max(...missed.map((one) => one[i])), (i) => missed.reduce((all, one) => all + one[i], 0)];
+  let best = 0;
+  for (let i = 1; i < size; i += 1) if ((worst(i) - worst(best) || sum(i) - sum(best)) < 0) best = i;
+  return stand(best);
 }
 
-function nothing(designs) {
-  const names = Object.keys(state.ranges);
-  const alone = names.length === 1 && state.withoutMotors.size === 0;
-  if (alone && page.objectives.includes(names[0])) {
-    const [name] = names, [low, high] = extent(designs.map(([study, row]) => valueAt(study, name, row)));
-    const [least, most] = state.ranges[name];
-    if (least !== null && least > high) return `The front ends at ${shown(name, high)}: ask for less, or run the study longer.`;
-    if (most !== null && most < low) return `The front begins at ${shown(name, low)}: allow more, or run the study longer.`;
-  }
-  const spans = Object.fromEntries(names.map((name) => {
-    const [low, high] = extent(designs.map(([study, row]) => valueAt(study, name, row)));
-    return [name, high - low || Math.abs(high) || 1];
-  }));
-  const wanted = designs.filter(([study, row]) => !page.studies[study].trials.columns.motor || !state.withoutMotors.has(kitOf(page.studies[study], row)));
-  if (!wanted.length) return "No design of the front has one of these motors.";
-  const nearest = wanted.reduce((best, next) => (missing(next, spans) < missing(best, spans) ? next : best));
-  return `No design of the front meets all of this. The nearest is ${measuresInWords(nearest)}.`;
+// A number of five digits, in the unit shown, that a value still meets as a condition.
+function enough(value, side) {
+  const rounded = Number(value.toPrecision(5));
+  if (side ? rounded >= value : rounded <= value) return rounded;
+  const step = 10 ** (Math.floor(Math.log10(Math.abs(value))) - 4);
+  return Number((side ? rounded + step : rounded - step).toPrecision(5));
 }
 
-// What the front answers to the conditions: words, and the design if there is one.
+// Why nothing meets the conditions: the nearest design, and which of them alone would have to give how much.
+function nothing() {
+  const list = conditionList();
+  const wanted = pooled((study) => rowsMeeting(study, soundRows(study), []));
+  if (!wanted.size) return "No stored design has one of these motors.";
+  const cures = list.flatMap((one, k) => {
+    const values = [...state.visible].flatMap((study) => rowsMeeting(study, soundRows(study), list.filter((_, j) => j !== k)).map((row) => columnOf(study, one.name)[row])).filter((value) => !Number.isNaN(value));
+    if (!values.length) return [];
+    const { scale, label, unit } = quantity[one.name], [low, high] = extent(values);
+    const value = enough((one.side ? low : high) * scale, one.side), by = Number(Math.abs(value - one.value * scale).toPrecision(3));
+    return [`${label} ${one.side ? "≤" : "≥"} ${value} ${unit} (${by} ${one.side ? "more" : "less"})`.replace(" 1 (", " (")];
+  });
+  const cure = cures.length ? `It is met with ${cures.join(", or with ")}` : "No single condition is in the way: relax two";
+  return `No stored design meets ${list.length > 1 ? "all of this" : "this"}. The nearest is ${measuresInWords(nearestOf(wanted, list))}. ${cure}.`;
+}
+
+// What the studies shown answer to the conditions: words, and the design if there is one.
 function answer() {
-  const designs = shownDesigns();
-  if (!designs.length) return { words: "There is no front to search." };
-  const able = designs.filter(([study, row]) => inRanges(study, row));
-  if (!able.length) return { words: nothing(designs) };
-  // A wanted first objective is had for the least of the second; else all else buys the best first.
-  const wanted = (state.ranges[FIRST]?.[askedEnd(FIRST)] ?? null) !== null;
-  const [name, other] = wanted ? [SECOND, FIRST] : [FIRST, SECOND];
-  const design = bestOf(able, name, other);
-  const count = `${able.length} ${able.length === 1 ? "design" : "designs"} of the front ${able.length === 1 ? "meets" : "meet"} this`;
-  const words = measuresInWords(design);
-  return { design, words: `${words[0].toUpperCase()}${words.slice(1)}: ${superlative(name)} that these conditions leave; ${count}.` };
+  if (![...state.visible].some((study) => soundRows(study).length)) return { words: "There is no design to choose." };
+  const found = chosenDesign();
+  if (!found) return { words: nothing() };
+  const { design, count, onFront } = found, words = measuresInWords(design);
+  const left = page.studies.reduce((sum, s) => sum + s.trials.total - s.trials.trial.length, 0);
+  const out = left ? ` ${left} trials are not on this page: pick looks at all of them.` : "";
+  return { design, words: `${words[0].toUpperCase()}${words.slice(1)}: ${found.words}${filtered() ? " that these conditions leave" : ""}; ${count} ${count === 1 ? "design meets" : "designs meet"} this, ${onFront} on the front.${out}` };
 }
 
 function showAnswer(choose) {
   const out = byId("ask-answer");
-  const any = filtered();
+  const any = filtered() || state.best !== "";
   const { design, words } = any ? answer() : { words: "" };
   out.classList.toggle("bad", any && !design);
   out.textContent = words;
@@ -118,12 +110,19 @@ function startAsk() {
       showAnswer(true);
     });
   }
+  const ways = byId("best");
+  ways.append(
+    make("optgroup", { label: "on the front" }, ...[["", "best that is left"], ["knee", "knee"], ["compromise", "compromise"]].map(([value, words]) => make("option", { value }, words))),
+    ...["least", "most"].map((word) => make("optgroup", { label: `${word} of any` }, ...knownNames().filter((name) => page.axes.includes(name)).map((name) => make("option", { value: `${word} ${name}` }, `${word} ${quantity[name].label}`)))),
+  );
+  ways.addEventListener("change", () => { setBest(ways.value); showAnswer(true); });
   byId("ask").addEventListener("submit", (event) => { event.preventDefault(); showAnswer(true); });
   const follow = ({ final }) => {
     for (const field of fields) {
       const value = state.ranges[field.dataset.ask]?.[askedEnd(field.dataset.ask)] ?? null;
-      if (document.activeElement !== field || !final) field.value = value === null ? "" : Number((value * quantity[field.dataset.ask].scale).toPrecision(6));
+      if (document.activeElement !== field || !final) field.value = value === null ? "" : Number((value * quantity[field.dataset.ask].scale).toPrecision(9));
     }
+    ways.value = state.best;
     showConditions();
     if (final) showAnswer(false);
   };

@@ -36,8 +36,6 @@ function startAxes() {
     on("axes", follow);
     return make("label", {}, input, label);
   };
-  // On a phone the controls would push the chart off the screen.
-  box.closest("details").open = window.innerWidth > PHONE_PX;
   const third = page.objectives.length > 2;
   const group = KITS.length ? "motor" : page.studies.length > 1 ? "study" : "none";
   const turn = make("input", { type: "range", id: "turn", min: -90, max: 90, value: -35, "aria-label": "Turn the 3D view" });
@@ -54,6 +52,11 @@ function startAxes() {
   for (const [words, label, factor] of [["+", "Zoom in", 1 / 1.5], ["−", "Zoom out", 1.5], ["Whole", "Show the whole front", 0]]) {
     const button = make("button", { type: "button", "aria-label": label, title: label }, words);
     button.addEventListener("click", () => zoomFront(factor));
+    box.append(button);
+  }
+  for (const format of ["png", "svg"]) {
+    const button = make("button", { type: "button" }, format.toUpperCase());
+    button.addEventListener("click", () => front.picture(format));
     box.append(button);
   }
 }

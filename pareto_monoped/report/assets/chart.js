@@ -1,4 +1,5 @@
-// A chart in the plane: axes in SVG, clouds and marks on canvases, hovering, choosing and zooming.
+// A chart by plotly: axes, lines, few marks, zoom, pan, selections and pictures. Crowds of marks are painted into an
+// image under plotly's lines, so that thousands of them take no elements; hovering and choosing look them up here.
 //
 // A layer has name, x and y (values as shown), and by its mode
 //   "markers"  marker { size, symbol, color, opacity, ramp }, each one value or one per point; cloud: many small dots
@@ -10,30 +11,87 @@
 const charts = [];
 const NEAR_PX = 14; // a click this near to a mark means it
 const TOUCH_PX = 22; // half of the 44 px that a finger needs (WCAG 2.5.5)
-const LEAST_DRAG_PX = 8;
+const CROWD = 150; // marks of a layer that become an image
+const COARSE = matchMedia("(pointer: coarse)").matches; // a finger scrolls the page
+const FONT = { family: "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif", size: 12 };
+
+// The line, areas, bars and few marks of a layer as traces.
+function tracesOf(layer) {
+  const { line, marker, mode, name } = layer, thin = mode.includes("lines") && layer.x.length > CROWD ? thinned(layer) : null;
+  const [x, y] = thin ? [layer.x, layer.y].map((list) => thin.map((i) => list[i])) : [layer.x, layer.y];
+  const common = { x, y, name, type: "scatter", hoverinfo: "skip", showlegend: false, cliponaxis: false };
+  if (mode === "area") return [{ ...common, y, mode: "lines", line: { width: 0, color: layer.fill } }, { ...common, y: layer.y2, mode: "lines", line: { width: 0, color: layer.fill }, fill: "tonexty", fillcolor: faded(layer.fill, 0.2) }];
+  if (mode === "bars") {
+    const [xLow, xHigh, yLow, yHigh] = [0, 1, 2, 3].map((k) => layer.ends.map((ends) => ends[k]));
+    const bar = (low, high, at) => (low.every((one) => one === null) ? { visible: false } : { type: "data", symmetric: false, array: high.map((v, i) => v - at[i]), arrayminus: low.map((v, i) => at[i] - v), width: 0, thickness: 1, color: line.color });
+    return [{ ...common, mode: "markers", marker: { size: 1, opacity: 0 }, opacity: line.opacity ?? 0.6, error_x: bar(xLow, xHigh, x), error_y: bar(yLow, yHigh, y) }];
+  }
+  const marks = mode.includes("markers") && !layer.crowd;
+  if (!marks && !mode.includes("lines")) return [];
+  return [{
+    ...common, mode: [...(mode.includes("lines") ? ["lines"] : []), ...(marks ? ["markers"] : [])].join("+"), opacity: line?.opacity ?? 1,
+    ...(line ? { line: { color: line.color, width: line.width ?? 1.5, dash: line.dash ?? "solid", shape: line.shape ?? "linear" } } : {}),
+    ...(marks ? { marker: { size: marker.size, symbol: each(marker.symbol ?? "circle", (symbol) => (symbol === "cross" ? "x-thin-open" : symbol)), color: marker.ramp ? x.map((_, i) => tintOf(marker, i)) : marker.color, opacity: marker.opacity ?? 1, line: { width: /open/.test(entry(marker.symbol ?? "", 0)) ? 1.8 : 0 } } } : {}),
+  }];
+}
+
+function configOf(picture, tools, scrollZoom) {
+  const button = (format) => ({ name: `picture ${format}`, title: `Picture as ${format.toUpperCase()}`, icon: format === "png" ? Plotly.Icons.camera : Plotly.Icons.disk, click: () => picture(format) });
+  return { displaylogo: false, responsive: false, scrollZoom, doubleClick: false, displayModeBar: !COARSE, showTips: false, modeBarButtons: [...(tools.length ? [tools] : []), [button("png"), button("svg")]] };
+}
+
+// Plotly's bar of tools stands beside a chart, because a picture or a slider for a screen reader may hold no buttons.
+function framed(node) {
+  if (node.parentElement.classList.contains("framed")) return;
+  const box = make("div", { class: "framed" }), bar = node.querySelector(".modebar-container");
+  node.replaceWith(box);
+  if (bar) box.append(bar);
+  box.append(node);
+}
+
+// The points of a line that move it by half a pixel.
+function thinned({ px, py, x }) {
+  const kept = [];
+  let last = -1;
+  for (let i = 0; i < x.length; i += 1) {
+    if (last >= 0 && i < x.length - 1 && Math.abs(px[i] - px[last]) + Math.abs(py[i] - py[last]) < 1 / 2) continue;
+    kept.push(i);
+    last = i;
+  }
+  return kept;
+}
+
+function each(list, change) { return Array.isArray(list) ? list.map(change) : change(list); }
+
+function faded(tint, alpha) { return `rgba(${rgbOf(tint).join(",")},${alpha})`; }
+
+function axisLook(title, kind, range) {
+  return {
+    title: { text: plain(title), standoff: 6 }, type: kind, range: kind === "log" ? range.map(Math.log10) : range, gridcolor: colour("grid"), linecolor: colour("line"), mirror: true, showline: true,
+    zeroline: false, tickcolor: colour("line"), color: colour("soft"), automargin: false, nticks: 8, exponentformat: "none", minexponent: 6, ...(kind === "log" ? { dtick: Math.log10(range[1] / range[0]) > 1.3 ? "D2" : undefined } : {}),
+  };
+}
 
 class Chart {
-  constructor(node, { margin = {}, chosen = null, label = "", shown = null } = {}) {
-    Object.assign(this, { node, chosen, shown, layers: [], view: null, margin: { l: 58, r: 14, t: 12, b: 46, ...margin } });
+  constructor(node, { margin = {}, chosen = null, label = "", shown = null, framed = null, moved = null } = {}) {
+    Object.assign(this, { node, chosen, shown, framed, moved, layers: [], view: null, margin: { l: 58, r: 14, t: 12, b: 46, ...margin } });
     node.chart = this;
-    this.back = draw("svg", { "aria-hidden": "true" });
-    this.cloud = make("canvas", { "aria-hidden": "true" });
-    this.marks = make("canvas", { "aria-hidden": "true" });
-    this.front = draw("svg", { "aria-hidden": "true", "pointer-events": "none" });
-    this.band = make("div", { class: "band", hidden: "" });
-    this.tip = make("div", { class: "tip", hidden: "" });
     node.classList.add("plot");
-    node.replaceChildren(this.back, this.cloud, this.marks, this.front, this.band, this.tip);
+    this.back = draw("svg", { "aria-hidden": "true" });
+    this.tip = make("div", { class: "tip", hidden: "" });
+    node.replaceChildren(this.back, this.tip);
     if (label) describe(node, label);
     this.listen();
     new ResizeObserver(() => { if (this.drawn && (node.clientWidth !== this.drawn[0] || node.clientHeight !== this.drawn[1])) this.draw(); }).observe(node);
   }
 
   // x and y: { title, range, kind }; the view stays while the key stays.
-  set(layers, x, y, { key = "", margin = {}, names = [] } = {}) {
-    if (key !== this.key) this.view = null;
+  set(layers, x, y, { key = "", margin = {}, names = [], view } = {}) {
+    if (view !== undefined) this.view = view;
+    else if (key !== this.key) this.view = null;
     Object.assign(this, { layers, given: { x, y }, key, names, margin: { ...this.margin, ...margin } });
-    this.node.data = layers;
+    this.node.layers = layers;
+    for (const layer of layers) layer.crowd = Boolean(layer.cloud) || (layer.mode?.includes("markers") && layer.x.length > CROWD);
     this.draw();
   }
 
@@ -57,109 +115,118 @@ class Chart {
     if (!this.given) return;
     this.measure();
     for (const layer of this.layers) this.place(layer);
-    this.paint();
-    this.drawAxes();
-    this.drawNames();
+    const { all } = this.box, { l, r, t, b } = this.margin;
     this.hideTip();
+    Plotly.react(this.node, this.layers.flatMap((layer) => (this.space ? [] : tracesOf(layer))), {
+      width: all[0], height: all[1], margin: { l, r, t, b, pad: 0 }, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { ...FONT, color: colour("ink") }, showlegend: false, hovermode: false,
+      dragmode: this.space || COARSE ? false : this.mode ?? "zoom", modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("faint"), activecolor: colour("c0"), orientation: "h" },
+      xaxis: { ...axisLook(this.given.x.title, this.x.kind, this.x.range), visible: !this.space }, yaxis: { ...axisLook(this.given.y.title, this.y.kind, this.y.range), visible: !this.space },
+      images: this.images(), annotations: this.space ? [] : this.annotations(), newselection: { line: { color: colour("select"), width: 1.5 } },
+    }, this.config());
+    framed(this.node);
+    this.follow();
+    this.drawAxes();
     this.shown?.();
   }
 
-  place(layer) {
-    const own = (list, to) => { const result = new Float32Array(list.length); for (let i = 0; i < list.length; i += 1) result[i] = to(list[i]); return result; };
-    const across = (v) => this.px(v), up = (v) => this.py(v);
-    layer.px = own(layer.x, across);
-    layer.py = own(layer.y, up);
-    if (layer.y2) layer.py2 = own(layer.y2, up);
-    if (layer.ends) layer.bars = layer.ends.map(([a, b, c, d], i) => [...[a, b].map((v) => (v === null ? null : across(v))), ...[c, d].map((v) => (v === null ? null : up(v))), layer.px[i], layer.py[i]]);
+  // One object per chart: another one makes plotly begin anew.
+  config() {
+    this.configs ??= configOf((format) => this.picture(format), ["zoom2d", "pan2d", ...(this.framed ? ["select2d", "lasso2d"] : [])], !COARSE && Boolean(this.chosen));
+    return this.configs;
   }
 
-  paint() {
-    const scale = paperScale() ?? (window.devicePixelRatio || 1);
+  picture(format) {
     const [width, height] = this.box.all;
-    for (const canvas of [this.cloud, this.marks]) {
-      if (canvas.width !== Math.round(width * scale)) canvas.width = Math.round(width * scale);
-      if (canvas.height !== Math.round(height * scale)) canvas.height = Math.round(height * scale);
-    }
-    const under = this.cloud.getContext("2d");
-    under.clearRect(0, 0, this.cloud.width, this.cloud.height);
-    const clouds = this.layers.filter((layer) => layer.cloud);
-    if (clouds.length) {
-      const image = under.createImageData(this.cloud.width, this.cloud.height);
-      for (const layer of clouds) paintCloud(image, layer, scale);
-      under.putImageData(image, 0, 0);
-      this.trim(under, scale);
-    }
-    const context = this.marks.getContext("2d");
-    context.setTransform(scale, 0, 0, scale, 0, 0);
-    context.clearRect(0, 0, width, height);
-    context.save();
-    const { left, top, width: w, height: h } = this.box;
-    context.beginPath();
-    context.rect(left - 6, top - 6, w + 12, h + 12);
-    context.clip();
-    for (const layer of this.layers) {
-      if (layer.cloud) continue;
-      if (layer.mode === "area") paintArea(context, layer);
-      if (layer.mode === "bars") paintBars(context, layer);
-      if (layer.mode.includes("lines")) paintLine(context, layer);
-      if (layer.mode.includes("markers")) paintMarks(context, layer, scale);
-    }
-    context.restore();
+    return Plotly.downloadImage(this.node, { format, width, height, scale: format === "png" ? 2 : 1, filename: "chart" });
   }
 
-  // Dots outside the frame, which lie over the axes' numbers after zooming, are wiped away.
-  trim(context, scale) {
-    const { left, top, width, height, all } = this.box;
-    context.clearRect(0, 0, (left - 4) * scale, all[1] * scale);
-    context.clearRect(0, (top + height + 4) * scale, all[0] * scale, all[1] * scale);
-    context.clearRect(0, 0, all[0] * scale, (top - 6) * scale);
-    context.clearRect((left + width + 6) * scale, 0, all[0] * scale, all[1] * scale);
+  // Crowds of marks: clouds under the lines, marks of a front over them.
+  images() {
+    const { left, top, width, height } = this.box, scale = paperScale() ?? (window.devicePixelRatio || 1);
+    const painted = (layers, paint) => {
+      if (!layers.length) return [];
+      const canvas = make("canvas", { width: Math.round(width * scale), height: Math.round(height * scale) });
+      paint(softly(canvas));
+      return [canvas.toDataURL()];
+    };
+    const clouds = this.layers.filter((layer) => layer.cloud), marks = this.layers.filter((layer) => (layer.crowd || (this.space && layer.mode.includes("markers"))) && !layer.cloud);
+    const under = painted(clouds, (context) => {
+      const image = context.createImageData(context.canvas.width, context.canvas.height);
+      for (const layer of clouds) paintCloud(image, layer, scale, left, top);
+      context.putImageData(image, 0, 0);
+    });
+    const over = painted(marks, (context) => {
+      context.scale(scale, scale);
+      context.translate(-left, -top);
+      for (const layer of marks) paintMarks(context, layer, scale);
+    });
+    return [[under, "below"], [over, "above"]].flatMap(([sources, layer]) => sources.map((source) => ({ source, layer, ...this.spot() })));
   }
 
-  drawAxes() {
-    const { left, top, width, height, all } = this.box;
-    const { x, y } = this.given;
-    const right = left + width, bottom = top + height;
-    const parts = [];
-    const inside = (share) => share >= -1e-6 && share <= 1 + 1e-6;
-    for (const value of this.y.ticks(Math.max(Math.round(height / 55), 2))) {
-      if (!inside(this.y.share(value))) continue;
-      const at = this.py(value);
-      parts.push(draw("line", { x1: left, x2: right, y1: at, y2: at, class: "gridline" }), text(left - 6, at + 4, tickText(value), "end"));
-    }
-    for (const value of this.x.ticks(Math.max(Math.round(width / 70), 3))) {
-      if (!inside(this.x.share(value))) continue;
-      const at = this.px(value);
-      parts.push(draw("line", { x1: at, x2: at, y1: top, y2: bottom, class: "gridline" }), text(at, bottom + 16, tickText(value), "middle"));
-    }
-    parts.push(draw("rect", { x: left, y: top, width, height, class: "frame" }));
-    const title = text(13, top + height / 2, y.title, "middle", "title");
-    title.setAttribute("transform", `rotate(-90 13 ${top + height / 2})`);
-    parts.push(text(left + width / 2, all[1] - 7, x.title, "middle", "title"), title);
-    this.back.replaceChildren(...parts);
+  // Where an image of the whole frame lies: in the axes' values where these are linear, so that it moves along in panning.
+  spot() {
+    const linear = this.x.kind === "linear" && this.y.kind === "linear", [low, high] = this.x.range, [bottom, top] = this.y.range;
+    return linear ? { xref: "x", yref: "y", x: low, y: top, sizex: high - low, sizey: top - bottom, sizing: "stretch" } : { xref: "x domain", yref: "y domain", x: 0, y: 1, sizex: 1, sizey: 1, sizing: "stretch" };
+  }
+
+  place(layer) {
+    const own = (list, to) => Float32Array.from(list, to);
+    layer.px = own(layer.x, (v) => this.px(v));
+    layer.py = own(layer.y, (v) => this.py(v));
   }
 
   // Names beside marks, each where it covers neither a name nor a mark, else at the end of a short line.
-  drawNames() {
+  annotations() {
     const { left, top, width, height } = this.box;
     const marks = this.names.map((name) => ({ ...name, px: this.px(name.x), py: this.py(name.y) })).filter(({ px, py }) => px >= left && px <= left + width && py >= top && py <= top + height);
     this.labels = placedNames(marks, this.box);
-    this.front.replaceChildren(...this.labels.flatMap(({ px, py, from, to, at, text: words }) => {
-      const label = text((from + to) / 2, at + 4, words, "middle", "strong halo");
+    const inAxis = (scale, value) => (scale.kind === "log" ? Math.log10(value) : value);
+    return this.labels.map(({ px, py, x, y, from, to, at, text: words }) => {
       const far = Math.hypot(Math.max(from - px, px - to, 0), Math.max(Math.abs(at - py) - 8, 0)) > 14;
-      return far ? [draw("line", { x1: px, y1: py, x2: Math.min(Math.max(px, from), to), y2: at + (py < at ? -7 : 6), stroke: "var(--soft)" }), label] : [label];
-    }));
+      return { x: inAxis(this.x, x), y: inAxis(this.y, y), ax: (from + to) / 2 - px, ay: at - py, text: plain(words), showarrow: true, arrowhead: 0, arrowwidth: 1, arrowcolor: far ? colour("soft") : "rgba(0,0,0,0)", font: { color: colour("ink"), weight: 600 }, bgcolor: faded(colour("card"), 0.6), borderpad: 0 };
+    });
+  }
+
+  drawAxes() { this.back.replaceChildren(); }
+
+  // What plotly tells: another view, a frame or a lasso, another tool.
+  follow() {
+    if (this.followed) return;
+    this.followed = true;
+    const ends = (axis, scale) => axis.range.map((value) => (scale.kind === "log" ? 10 ** value : value));
+    this.node.on("plotly_relayout", (change) => {
+      if (change.dragmode) this.mode = change.dragmode;
+      if (!Object.keys(change).some((key) => key.includes("axis.range"))) return;
+      const { xaxis, yaxis } = this.node.layout;
+      this.look({ x: ends(xaxis, this.x), y: ends(yaxis, this.y) });
+    });
+    this.node.on("plotly_relayouting", () => { this.hideTip(); });
+    this.node.on("plotly_selected", () => {
+      const [drawn] = this.node.layout.selections ?? [];
+      if (!drawn) return;
+      Plotly.relayout(this.node, { selections: [] });
+      const value = (scale, text) => (scale.kind === "log" ? 10 ** Number(text) : Number(text));
+      const points = drawn.type === "rect" ? [[drawn.x0, drawn.y0], [drawn.x1, drawn.y1]] : [...drawn.path.matchAll(/([\d.eE+-]+),([\d.eE+-]+)/g)].map(([, x, y]) => [x, y]);
+      const corners = points.map(([x, y]) => [value(this.x, x), value(this.y, y)]);
+      this.framed?.({ corners, frame: drawn.type === "rect" });
+    });
+  }
+
+  look(view) {
+    this.view = view;
+    this.draw();
+    this.moved?.(this.view);
   }
 
   // The point that a pointer at a place means: the nearest mark, else the nearest dot of a cloud.
-  nearest(x, y, reach = NEAR_PX) {
+  nearest(x, y, reach = NEAR_PX, wanted = "stands") {
     for (const clouds of [false, true]) {
       let best = null, least = clouds ? Math.min(reach, NEAR_PX) : reach;
       for (const layer of this.layers) {
-        if (!layer.stands || Boolean(layer.cloud) !== clouds) continue;
+        if (!layer[wanted] || Boolean(layer.cloud) !== clouds) continue;
         for (let i = 0; i < layer.px.length; i += 1) {
           const away = Math.hypot(layer.px[i] - x, layer.py[i] - y);
-          if (away < least) { least = away; best = { layer, i, away }; }
+          if (away < least) { least = away; best = { layer, i }; }
         }
       }
       if (best) return best;
@@ -167,70 +234,43 @@ class Chart {
     return null;
   }
 
+  // Plotly's own layer takes the mouse's events; those of pointers pass it.
   listen() {
-    const { node, band } = this;
+    const { node } = this;
     const place = (event) => { const box = node.getBoundingClientRect(); return [event.clientX - box.left - node.clientLeft, event.clientY - box.top - node.clientTop]; };
-    let start = null;
-    node.addEventListener("pointerdown", (event) => { if (event.isPrimary && event.button === 0) start = place(event); });
-    node.addEventListener("pointermove", (event) => {
-      const [x, y] = place(event);
-      // A finger scrolls the page; only a mouse or a pen draws a frame.
-      if (!start || event.pointerType === "touch") { if (!start) this.hover(x, y); return; }
-      if (Math.hypot(x - start[0], y - start[1]) < LEAST_DRAG_PX) return;
-      this.hideTip();
-      if (band.hidden) node.setPointerCapture(event.pointerId);
-      band.hidden = false;
-      Object.assign(band.style, { left: `${Math.min(x, start[0])}px`, top: `${Math.min(y, start[1])}px`, width: `${Math.abs(x - start[0])}px`, height: `${Math.abs(y - start[1])}px` });
-    });
-    node.addEventListener("pointerup", (event) => {
+    let start = null, clicked = { time: -Infinity, at: [0, 0] };
+    node.addEventListener("pointerdown", (event) => { if (event.isPrimary && event.button === 0 && !event.target.closest(".modebar")) start = place(event); }, true);
+    node.addEventListener("pointermove", (event) => { if (!start && this.box) this.hover(...place(event)); }, true);
+    window.addEventListener("pointerup", (event) => {
       if (!start) return;
       const from = start, to = place(event);
       start = null;
-      if (!band.hidden) { band.hidden = true; this.zoomTo(from, to); return; }
+      if (Math.hypot(to[0] - from[0], to[1] - from[1]) > 4) { this.dragged?.(from, to); return; }
+      const again = event.timeStamp - clicked.time < 400 && Math.hypot(to[0] - clicked.at[0], to[1] - clicked.at[1]) < 8;
+      clicked = { time: event.timeStamp, at: to };
+      if (again) { this.whole(); return; }
       const found = this.nearest(...to, event.pointerType === "touch" ? TOUCH_PX : NEAR_PX);
       const stands = found && entry(found.layer.stands, found.i);
       if (stands) this.chosen?.(stands);
     });
-    node.addEventListener("pointercancel", () => { start = null; band.hidden = true; });
+    node.addEventListener("pointercancel", () => { start = null; });
     node.addEventListener("pointerleave", () => this.hideTip());
-    node.addEventListener("dblclick", () => this.whole());
   }
 
   hover(x, y) {
-    if (!this.box) return;
-    const found = this.textAt(x, y);
-    if (!found) { this.hideTip(); return; }
-    const { tip } = this;
-    tip.innerHTML = found.words; // the words were made plain where they were put together
+    const { left, top, width, height, all } = this.box;
+    const inside = x >= left && x <= left + width && y >= top && y <= top + height;
+    const found = inside ? this.nearest(x, y, NEAR_PX, "text") : null, words = found?.layer.text(found.i);
+    if (!words) { this.hideTip(); return; }
+    const { tip } = this, [px, py] = [found.layer.px[found.i], found.layer.py[found.i]];
+    tip.innerHTML = words; // they were made plain where they were put together
     tip.hidden = false;
-    const [width] = this.box.all, own = tip.offsetWidth;
-    tip.style.left = `${Math.min(Math.max(found.x + 14 + own > width ? found.x - own - 14 : found.x + 14, 0), Math.max(width - own, 0))}px`;
-    tip.style.top = `${Math.max(found.y - tip.offsetHeight / 2, 0)}px`;
-  }
-
-  textAt(x, y) {
-    let best = null, least = NEAR_PX;
-    for (const layer of this.layers) {
-      if (!layer.text) continue;
-      for (let i = 0; i < layer.px.length; i += 1) {
-        const away = Math.hypot(layer.px[i] - x, layer.py[i] - y) + (layer.cloud ? 4 : 0);
-        if (away < least) { least = away; best = [layer, i]; }
-      }
-    }
-    const words = best && best[0].text(best[1]);
-    return words ? { words, x: best[0].px[best[1]], y: best[0].py[best[1]] } : null;
+    const own = tip.offsetWidth;
+    tip.style.left = `${Math.min(Math.max(px + 14 + own > all[0] ? px - own - 14 : px + 14, 0), Math.max(all[0] - own, 0))}px`;
+    tip.style.top = `${Math.max(py - tip.offsetHeight / 2, 0)}px`;
   }
 
   hideTip() { this.tip.hidden = true; }
-
-  zoomTo([x1, y1], [x2, y2]) {
-    const { left, top, width, height } = this.box;
-    const across = [x1, x2].sort((a, b) => a - b).map((x) => this.x.value(Math.min(Math.max((x - left) / width, 0), 1)));
-    const up = [y1, y2].sort((a, b) => b - a).map((y) => this.y.value(Math.min(Math.max(1 - (y - top) / height, 0), 1)));
-    if (across[0] >= across[1] || up[0] >= up[1]) return;
-    this.view = { x: across, y: up };
-    this.draw();
-  }
 
   // Nearer about a point of the chart, or farther with a factor above 1.
   zoom(factor, [x, y]) {
@@ -238,9 +278,8 @@ class Chart {
     const corner = (sx, sy) => [x + (left + sx * width - x) * factor, y + (top + sy * height - y) * factor];
     const [from, to] = [corner(0, 0), corner(1, 1)];
     const ends = (scale, a, b) => [scale.value(a), scale.value(b)];
-    this.view = { x: ends(this.x, (from[0] - left) / width, (to[0] - left) / width), y: ends(this.y, 1 - (to[1] - top) / height, 1 - (from[1] - top) / height) };
-    this.draw();
+    this.look({ x: ends(this.x, (from[0] - left) / width, (to[0] - left) / width), y: ends(this.y, 1 - (to[1] - top) / height, 1 - (from[1] - top) / height) });
   }
 
-  whole() { this.view = null; this.draw(); }
+  whole() { this.look(null); }
 }

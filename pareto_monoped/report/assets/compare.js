@@ -40,19 +40,18 @@ function comparisonTable(designs) {
 }
 
 // Heights of the bases over time, and the moments of lift-off.
-function jumpsChart(entries) {
-  const series = entries.map(({ jump, tint }) => ({ x: jump.time_s, y: jump.base_z_m, colour: tint, thick: 2 }));
+function jumpsChart(box, entries) {
+  const tints = entries.map(({ tint }) => colour(tint.slice(6, -1)));
+  const series = entries.map(({ jump }, i) => ({ x: jump.time_s, y: jump.base_z_m, colour: tints[i], thick: 2 }));
   const x = [0, Math.max(...entries.map(({ jump }) => jump.time_s.at(-1)))];
   const title = "height of the base, m; circles: lift-off";
-  const chart = smallChart({ width: 460, height: 220, x, y: padded(extent(series.flatMap((one) => one.y))), title, xTitle: "time, s", series, label: `Jumps of ${entries.length} kept designs over each other` });
-  for (const { jump, tint } of entries) {
-    const at = mixed(jump, "base_z_m", frameAt(jump, jump.lift_off_s));
-    chart.svg.append(draw("circle", { cx: chart.toX(jump.lift_off_s), cy: chart.toY(at), r: 4, fill: "var(--card)", stroke: tint, "stroke-width": 2 }));
-  }
-  race.cursor = draw("line", { y1: chart.top, y2: chart.top + chart.h, stroke: "var(--select)", "stroke-width": 1.5 });
-  race.toX = chart.toX;
-  chart.svg.append(race.cursor);
-  return chart.svg;
+  const y = padded(extent(series.flatMap((one) => one.y)));
+  const lifts = { x: entries.map(({ jump }) => jump.lift_off_s), y: entries.map(({ jump }) => mixed(jump, "base_z_m", frameAt(jump, jump.lift_off_s))), mark: entries.map(() => "circle-open"), size: 9, colours: tints };
+  [race.chart] = subplots(box, [{ title, x, y, xTitle: "time, s", series: [...series, lifts] }], { height: 240 });
+  describe(box, `Jumps of ${entries.length} kept designs over each other`);
+  race.cursor = make("div", { class: "cursor", "aria-hidden": "true" });
+  Object.assign(race.cursor.style, { top: `${race.chart.top}px`, height: `${race.chart.h}px` });
+  box.append(race.cursor);
 }
 
 const LANE_M = 0.52; // from one robot to the next
@@ -79,8 +78,7 @@ function setRaceTime(time) {
   for (const { jump, pose } of race.entries) pose(jump, jump ? Math.min(race.time, jump.time_s.at(-1)) : 0);
   byId("race-scrub").value = raceEnd() ? Math.round(1000 * race.time / raceEnd()) : 0;
   byId("race-scrub").setAttribute("aria-valuetext", `${round(race.time)} s of ${round(raceEnd())} s`);
-  race.cursor?.setAttribute("x1", race.toX(race.time));
-  race.cursor?.setAttribute("x2", race.toX(race.time));
+  if (race.cursor) race.cursor.style.left = `${race.chart.toX(race.time)}px`;
 }
 
 function playRace(playing) {
@@ -116,7 +114,9 @@ function showComparison() {
   byId("compare-table").replaceChildren(comparisonTable(designs));
   byId("race-stage").replaceChildren(raceStage(designs));
   const jumping = race.entries.filter(({ jump }) => jump);
-  byId("race-chart").replaceChildren(jumping.length ? jumpsChart(jumping) : make("p", { class: "small" }, "This page has no jumps of these designs."));
+  const chart = make("div", { class: "cells" });
+  byId("race-chart").replaceChildren(jumping.length ? chart : make("p", { class: "small" }, "This page has no jumps of these designs."));
+  if (jumping.length) jumpsChart(chart, jumping);
   const missing = race.entries.length - jumping.length;
   if (missing && jumping.length) byId("race-chart").append(make("p", { class: "small" }, `${missing} of them ${missing > 1 ? "are" : "is"} not on a front, so this page has no jump of ${missing > 1 ? "them" : "it"}.`));
   for (const id of ["race-play", "race-scrub", "race-speed"]) byId(id).disabled = !jumping.length;

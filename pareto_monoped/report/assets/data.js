@@ -1,4 +1,4 @@
-// Numbers of the trials: columns that the page has as lists, and others that it has as text, four letters per value.
+// Numbers of the trials: columns that the page has as lists, and others that it has as text, in single precision.
 
 // A value of a measure or variable, null where there is none; an unknown name is an error.
 function valueAt(study, name, row) {
@@ -10,28 +10,22 @@ function valueAt(study, name, row) {
   if (robust?.packed[name] !== undefined) [text, at] = [robust.packed[name], robust.rows.indexOf(row)];
   if (text === undefined) void quantity[name.split(".")[0]];
   if (text === undefined || at < 0) return null;
-  const bytes = atob(text.slice(4 * at, 4 * at + 4));
-  return finite(floatOf(bytes.charCodeAt(0) | (bytes.charCodeAt(1) << 8) | (bytes.charCodeAt(2) << 16)));
-}
-
-const bits = new DataView(new ArrayBuffer(4));
-
-// The upper three bytes of a number in single precision: its lowest byte is not kept.
-function floatOf(upper) {
-  bits.setUint32(0, (upper << 8) >>> 0);
-  return bits.getFloat32(0);
+  // Three values are sixteen letters.
+  return finite(unpack(text.slice(16 * Math.floor(at / 3), 16 * Math.floor(at / 3) + 16))[at % 3]);
 }
 
 function finite(value) { return Number.isFinite(value) ? value : null; }
 
 const unpacked = new Map();
 
-// All values of a measure or variable of a study, one per trial; null or NaN where there is none.
+// All values of a measure or variable of a study, one per trial; NaN where there is none.
 function columnOf(study, name) {
   const { columns, packed, trial } = page.studies[study].trials;
-  if (columns[name]) return columns[name];
   const key = `${study} ${name}`;
-  if (!unpacked.has(key)) unpacked.set(key, robustColumn(study, name) ?? (packed?.[name] === undefined ? new Float32Array(trial.length).fill(NaN) : unpack(packed[name])));
+  if (!unpacked.has(key)) {
+    const none = () => new Float32Array(trial.length).fill(NaN);
+    unpacked.set(key, columns[name] ? Float32Array.from(columns[name], (value) => value ?? NaN) : robustColumn(study, name) ?? (packed?.[name] === undefined ? none() : unpack(packed[name])));
+  }
   return unpacked.get(key);
 }
 
@@ -45,10 +39,13 @@ function robustColumn(study, name) {
 }
 
 function unpack(text) {
-  const bytes = atob(text);
-  const words = new Uint32Array(bytes.length / 3);
-  for (let i = 0, k = 0; i < words.length; i += 1, k += 3) words[i] = (bytes.charCodeAt(k) << 8) | (bytes.charCodeAt(k + 1) << 16) | (bytes.charCodeAt(k + 2) << 24);
-  return new Float32Array(words.buffer);
+  const letters = atob(text), bytes = new Uint8Array(letters.length);
+  for (let k = 0; k < bytes.length; k += 1) bytes[k] = letters.charCodeAt(k);
+  return new Float32Array(bytes.buffer);
+}
+
+for (const { trials: { columns } } of page.studies) {
+  for (const [name, text] of Object.entries(columns)) if (typeof text === "string") columns[name] = Array.from(unpack(text), finite);
 }
 
 // The measures and variables that some study has of every trial, in the order of the page's quantities.

@@ -12,6 +12,8 @@ function showSubject(chosen) {
   box.append(chosen.kind === "case" ? `The paper's ${chosen.name === "nominal" ? "nominal design" : `Case ${chosen.name}`}, simulated here${several}` : `Trial ${chosen.number}${several}`);
   const motor = chosen.study.trials.columns.motor ? `${page.kits[chosen.kit].motor}; ` : "";
   box.append(make("span", {}, `${motor}${chosen.why}`));
+  const dear = chosen.kind === "trial" ? dearWords(chosen.index, chosen.row) : "";
+  if (dear) box.append(make("span", { class: "dear" }, `⚠ ${dear} `, dearer(chosen.measures.height_m)));
   const heads = new Set([...page.goals, ...page.leading]);
   for (const name of heads) {
     if (chosen.measures[name] === undefined) continue;
@@ -25,6 +27,13 @@ function showSubject(chosen) {
     const share = m * GRAVITY * (h - START_HEIGHT) / e;
     byId("headline").append(make("div", { title: `m g (height - ${START_HEIGHT} m) / ${quantity[name].label}` }, make("b", {}, shown("efficiency", share)), label));
   }
+}
+
+// A way from a dear design to the one that takes the least from the battery at its height.
+function dearer(height) {
+  const button = make("button", { type: "button" }, "Show that");
+  button.addEventListener("click", () => { state.best = `least ${BATTERY}`; setRange("height_m", [height, null]); showAnswer(true); });
+  return button;
 }
 
 function showVariables(chosen) {

@@ -68,6 +68,7 @@ function hoverText(study, row) {
   for (const name of named) lines.push(`${plain(quantity[name].label)} ${shown(name, valueAt(study, name, row))}`);
   for (const variable of page.variables) if (!named.has(variable.name)) lines.push(`${quantity[variable.name].label} ${shown(variable.name, columns[variable.name][row])}`);
   if (columns.motor) lines.push(`motor ${plain(motorOf(card, row))}`);
+  if (dearWords(study, row)) lines.push("⚠ dear at the battery");
   return lines.join("<br>");
 }
 
@@ -104,7 +105,7 @@ function cloudLayers(study) {
   for (const [letter, wanted, name] of [["f", state.layers.cloud, "dominated"], ["i", state.layers.infeasible, "infeasible"]]) {
     if (!wanted) continue;
     const rows = rowsWith(study, letter, onFront);
-    const opacity = ranged ? rows.map((row) => (inRanges(study, row) ? 0.8 : 0.05)) : tint ? 0.6 : 0.35;
+    const opacity = ranged ? rows.map((row) => (inRanges(study, row) ? 0.8 : 0.06)) : tint ? 0.6 : 0.35;
     const marker = letter === "f"
       ? { size: 4, color: page.studies.length > 1 ? studyColour(study) : colour("cloud"), opacity, ...(tint ? { ramp: rangeOver(tint) } : {}) }
       : { size: 6, symbol: "cross", color: colour("bad"), opacity: ranged ? opacity : 0.6 };
@@ -142,6 +143,7 @@ function frontLayers(study) {
   const own = !space && y === FIRST && card.objectives.length === 2 && card.objectives.includes(FIRST) && card.objectives.includes(x);
   const steps = page.directions[FIRST] === "maximise" ? "hv" : "vh";
   const list = [designs("front", study, card.front, marker, own ? { mode: "lines+markers", line: { shape: steps, width: 1.2, color: tint, opacity: filtered() ? 0.25 : 1 } } : {})];
+  if (filtered()) list.push(designs("within", study, keptFront(study), { ...marker, symbol: MARKS[study % 6], color: tint, opacity: 1 }, own ? { mode: "lines+markers", line: { shape: steps, width: 1.6, color: tint } } : {}));
   if (card.weighted.length) {
     const rows = card.weighted.map(([, row]) => row);
     list.push(designs("weighted", study, rows, { size: 12, symbol: "square-open", color: tint }, {
@@ -209,7 +211,7 @@ function drawFront() {
   const { x, y, space } = state.axes;
   const side = (name, key) => ({ title: axisTitle(name), range: homeRange(key), kind: kindOf(key) });
   front.space = space ? { title: axisTitle(depthName()), range: paddedBy("linear", rangeOver(depthName())), kind: "linear" } : null;
-  front.set(layers, side(x, "x"), side(y, "y"), { key: JSON.stringify(state.axes), names: space ? [] : namesOf(layers) });
+  front.set(layers, side(x, "x"), side(y, "y"), { names: space ? [] : namesOf(layers), view: space ? null : state.view });
   showRamp();
   showNote();
 }
@@ -238,6 +240,38 @@ function placeRing() {
   ring.style.top = `${top}px`;
 }
 
+// A selection outside the view takes the view along.
+function bringAlong() {
+  const chosen = subject(), { x, y } = state.axes;
+  if (!front?.box || front.space || !chosen || !state.view) return;
+  const [across, up] = [x, y].map((name) => inShown(name, chosen.measures[name] ?? chosen.more[name]));
+  if (across === null || up === null) return;
+  const [sx, sy] = [front.x.share(across), front.y.share(up)];
+  if (sx >= 0 && sx <= 1 && sy >= 0 && sy <= 1) return;
+  const moved = (scale, share) => [scale.value(share - 1 / 2), scale.value(share + 1 / 2)];
+  front.look({ x: moved(front.x, sx), y: moved(front.y, sy) });
+}
+
+// A frame becomes conditions on both axes; what a lasso holds of the front goes to the shortlist, evenly if it is much.
+function byFrame({ corners, frame }) {
+  const { x, y } = state.axes;
+  if (frame) {
+    const ends = (name, k) => corners.map((corner) => Number((corner[k] / quantity[name].scale).toPrecision(5))).sort((a, b) => a - b);
+    setRange(x, ends(x, 0), false);
+    setRange(y, ends(y, 1));
+    showAnswer(true);
+    return;
+  }
+  const inside = (px, py) => corners.reduce((odd, [x1, y1], i) => {
+    const [x2, y2] = corners[(i + 1) % corners.length];
+    return (y1 > py) !== (y2 > py) && px < (x2 - x1) * (py - y1) / (y2 - y1) + x1 ? !odd : odd;
+  }, false);
+  const found = [...state.visible].flatMap((study) => keptFront(study).filter((row) => inside(...[x, y].map((name) => inShown(name, valueAt(study, name, row))))).map((row) => [study, row]));
+  const room = Math.min(SHORTLIST_MOST - state.shortlist.length, found.length);
+  for (let k = 0; k < room; k += 1) keep(...found[Math.round(room > 1 ? k * (found.length - 1) / (room - 1) : 0)]);
+  byId("page-note").textContent = found.length ? `${room} of ${found.length} designs in the lasso are on the shortlist.` : "The lasso holds no design of the front.";
+}
+
 function describeFront() {
   const { trials } = current();
   const rows = keptFront(state.study);
@@ -253,7 +287,7 @@ function describeFront() {
 
 function startFront() {
   front = new SpaceChart(gd, {
-    margin: { t: 14 }, shown: placeRing,
+    margin: { t: 14 }, shown: placeRing, framed: byFrame, moved: setView,
     chosen: (stands) => (typeof stands[1] === "number" ? select(...stands) : selectCase(...stands)),
   });
   gd.append(ring);
@@ -265,7 +299,7 @@ function startFront() {
   });
   startAxes();
   startMotorSwitches();
-  on("selection", () => { placeRing(); describeFront(); });
+  on("selection", () => { bringAlong(); placeRing(); describeFront(); });
   on("view", () => describeFront());
   on("view", lazily("front-chart", drawFront));
 }

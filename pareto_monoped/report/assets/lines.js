@@ -1,36 +1,4 @@
-// Small line charts in plain SVG, which are quick to redraw at every selection.
-
-// A chart of series {x, y, colour, dash, mark}; returns its node with functions from values to pixels.
-function smallChart({ width = 320, height = 150, left = 46, right = 8, top = 18, bottom = 30, x, y, xTitle, title, series = [], label }) {
-  const w = width - left - right, h = height - top - bottom;
-  const toX = (value) => left + (value - x[0]) / (x[1] - x[0] || 1) * w;
-  const toY = (value) => top + h - (value - y[0]) / (y[1] - y[0] || 1) * h;
-  const svg = draw("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": label ?? title });
-  for (const value of ticks(y[0], y[1], 3)) {
-    svg.append(draw("line", { x1: left, x2: left + w, y1: toY(value), y2: toY(value), class: "gridline" }));
-    svg.append(text(left - 5, toY(value) + 4, tickText(value), "end"));
-  }
-  for (const value of ticks(x[0], x[1], 4)) svg.append(text(toX(value), top + h + 14, tickText(value), "middle"));
-  svg.append(draw("rect", { x: left, y: top, width: w, height: h, class: "frame" }));
-  svg.append(text(4, 11, title, "start", "strong"));
-  if (xTitle) svg.append(text(left + w, height - 3, xTitle, "end"));
-  for (const one of series) {
-    if (one.mark) {
-      one.x.forEach((value, i) => {
-        if (one.y[i] !== null) svg.append(marker(one.mark[i], toX(value), toY(one.y[i]), one.colours?.[i] ?? one.colour, one.opacity ? one.opacity[i] : 1));
-      });
-    } else {
-      const d = one.x.map((value, i) => `${toX(value).toFixed(1)} ${toY(one.y[i]).toFixed(1)}`).join("L");
-      svg.append(draw("path", { d: `M${d}`, fill: "none", stroke: one.colour, "stroke-width": one.thick ?? 1.6, "stroke-dasharray": one.dash ?? "none" }));
-    }
-  }
-  return { svg, toX, toY, left, top, w, h };
-}
-
-function marker(kind, x, y, fill, opacity = 1) {
-  if (kind === "diamond") return draw("path", { d: `M${x} ${y - 4}l4 4l-4 4l-4 -4z`, fill, "fill-opacity": opacity });
-  return draw("circle", { cx: x, cy: y, r: 3, fill, "fill-opacity": opacity });
-}
+// Jumps over time, and how the variables change along the front.
 
 function padded([low, high], share = 0.06) {
   const room = share * (high - low) || Math.max(Math.abs(high) * 0.05, 1e-3);
@@ -38,62 +6,51 @@ function padded([low, high], share = 0.06) {
 }
 
 // Torque, speed and height of the selected jump, with a line at the moment the picture shows.
-let cursors = [];
+const times = { places: [], cursor: make("div", { class: "cursor", "aria-hidden": "true" }) };
 
 function drawTimes() {
-  const box = byId("time-charts");
-  box.replaceChildren();
-  cursors = [];
-  const chosen = subject();
-  const j = player.jump;
+  const box = byId("time-charts"), chosen = subject(), j = player.jump;
+  times.places = [];
+  byId("time-legend").hidden = !j;
+  times.cursor.hidden = !j;
   if (!j) {
-    box.append(make("p", { class: "small" }, noJump(chosen)));
+    if (box.data) Plotly.purge(box);
+    box.removeAttribute("role");
+    box.replaceChildren(make("p", { class: "small" }, noJump(chosen)));
     return;
   }
-  const x = [0, endTime()];
-  const legend = make("p", { class: "small" });
-  for (const [name, tint] of [["hip", "--hip"], ["knee", "--knee"]]) {
-    legend.append(make("span", { class: "swatch", style: `background: var(${tint})` }), name);
-  }
-  legend.append(`; dashed: limits of the gearboxes and end stops; vertical: lift-off at ${round(j.lift_off_s)} s`);
-  const level = (value, side) => ({ x, y: [value, value], colour: `var(--${side})`, dash: "3 3", thick: 1 });
-  const sides = ["hip", "knee"];
+  if (!box.data) box.replaceChildren(times.cursor);
+  const sides = ["hip", "knee"], level = (y, side) => ({ y, colour: colour(side), dash: "3px,3px" });
+  byId("time-legend").replaceChildren(...sides.flatMap((side) => [make("span", { class: "swatch", style: `background: var(--${side})` }), side]), `; dashed: limits of the gearboxes and end stops; vertical: lift-off at ${round(j.lift_off_s)} s`);
   const limits = sides.flatMap((side) => (chosen[side] ? [1, -1].map((sign) => level(sign * chosen[side].peak_torque_n_m, side)) : []));
-  const angles = sides.map((side) => ({ x: j.time_s, y: j[`${side}_rad`].map((angle) => angle * DEGREES), colour: `var(--${side})` }));
+  const angles = sides.map((side) => ({ x: j.time_s, y: j[`${side}_rad`].map((angle) => angle * DEGREES), colour: colour(side) }));
   // Of the stops, those that the jump comes near; the others would flatten the lines.
   const stops = sides.flatMap((side, k) => {
     const [low, high] = extent(angles[k].y), near = 0.25 * (high - low);
     const ends = (chosen.study.stops_rad[chosen.kit]?.[k] ?? []).filter((end) => end !== null).map((end) => end * DEGREES);
     return ends.filter((end) => end > low - near && end < high + near).map((end) => level(end, side));
   });
-  const pair = (suffix) => sides.map((side) => ({ x: j.time_s, y: j[side + suffix], colour: `var(--${side})` }));
-  const rows = [
-    { title: "motor torque at the joint, N m", series: [...pair("_motor_torque_n_m"), ...limits] },
+  const pair = (suffix) => sides.map((side) => ({ x: j.time_s, y: j[side + suffix], colour: colour(side) }));
+  const ink = colour("ink");
+  const cells = [
+    { title: "motor torque at the joint, N m", series: pair("_motor_torque_n_m"), lines: limits },
     { title: "joint speed, rad/s", series: pair("_rad_per_s") },
-    { title: "joint angle, degrees", series: [...angles, ...stops] },
-    { title: "force of the floor on the foot, N", series: [{ x: j.time_s, y: j.contact_z_n, colour: "var(--c1)" }] },
-    { title: "height of base and (thin) foot, m", series: [{ x: j.time_s, y: j.base_z_m, colour: "var(--ink)" }, { x: j.time_s, y: j.foot_z_m, colour: "var(--ink)", thick: 0.9 }] },
-  ];
-  rows.forEach((row, i) => {
-    const y = padded(extent(row.series.flatMap((s) => s.y)));
-    const last = i === rows.length - 1;
-    const chart = smallChart({ x, y, title: row.title, series: row.series, xTitle: last ? "time, s" : "", bottom: last ? 32 : 20, height: last ? 132 : 116, label: `${row.title}, over ${round(x[1], 2)} s` });
-    const at = chart.toX(j.lift_off_s);
-    chart.svg.append(draw("line", { x1: at, x2: at, y1: chart.top, y2: chart.top + chart.h, stroke: "var(--faint)" }));
-    const cursor = draw("line", { y1: chart.top, y2: chart.top + chart.h, stroke: "var(--c4)", "stroke-width": 1.5 });
-    chart.svg.append(cursor);
-    cursors.push({ cursor, toX: chart.toX });
-    box.append(chart.svg);
+    { title: "joint angle, degrees", series: angles, lines: stops },
+    { title: "force of the floor on the foot, N", series: [{ x: j.time_s, y: j.contact_z_n, colour: colour("c1") }] },
+    { title: "height of base and (thin) foot, m", xTitle: "time, s", series: [{ x: j.time_s, y: j.base_z_m, colour: ink }, { x: j.time_s, y: j.foot_z_m, colour: ink, thick: 0.9 }] },
+  ].map((cell) => {
+    const y = padded(extent([...cell.series.flatMap((s) => s.y), ...(cell.lines ?? []).map((line) => line.y)]));
+    const lift = { x: [j.lift_off_s, j.lift_off_s], y, colour: colour("faint"), thick: 1 };
+    return { ...cell, x: [0, endTime()], y, series: [...cell.series, lift] };
   });
-  box.prepend(legend);
+  times.places = subplots(box, cells, { height: 132 });
+  describe(box, `${cells.map(({ title }) => title).join("; ")}; over ${round(endTime(), 2)} s`);
   moveCursors();
 }
 
 function moveCursors() {
-  for (const { cursor, toX } of cursors) {
-    cursor.setAttribute("x1", toX(player.time));
-    cursor.setAttribute("x2", toX(player.time));
-  }
+  const [first] = times.places;
+  if (first) Object.assign(times.cursor.style, { left: `${first.toX(player.time)}px`, top: `${first.top}px`, height: `${times.places.at(-1).top + times.places.at(-1).h - first.top}px` });
 }
 
 function noJump(chosen) {
@@ -109,45 +66,44 @@ let dots = [];
 
 function drawAlong() {
   const box = byId("along-charts");
-  box.replaceChildren();
-  dots = [];
   const shownStudies = [...state.visible].filter((i) => page.studies[i].front.length);
+  dots.forEach(({ dot }) => dot.remove());
+  dots = [];
+  box.hidden = !shownStudies.length;
   if (!shownStudies.length) {
     byId("along-note").textContent = "There is no front to show.";
     return;
   }
   const firsts = extent(shownStudies.flatMap((i) => page.studies[i].front.map((row) => page.studies[i].trials.columns[FIRST][row])));
   const x = padded(firsts.map((value) => value * quantity[FIRST].scale), 0.03);
-  const several = page.studies.length > 1;
-  const width = window.innerWidth <= 700 ? 180 : 300; // keeps the words readable on a phone
-  for (const variable of page.variables) {
+  const faint = colour("faint");
+  const cells = page.variables.map((variable) => {
     const q = quantity[variable.name];
     const joint = variable.name.endsWith("_ratio") ? variable.name.replace("_ratio", "_gearbox") : null;
-    const limits = extent(page.studies.flatMap((s) => s.bounds[variable.name]));
-    const y = padded(limits.map((v) => v * q.scale), 0.08);
-    const series = shownStudies.map((i) => {
-      const { front, trials } = page.studies[i];
-      const family = (row) => (joint ? page.gearboxes[trials.columns[joint][row]]?.family : "ISSPG");
+    const limits = extent(page.studies.flatMap((s) => s.bounds[variable.name])).map((v) => v * q.scale);
+    const y = padded(limits, 0.08);
+    const one = (i, rows, opacity) => {
+      const { trials } = page.studies[i], value = (name, row) => trials.columns[name][row];
+      const family = (row) => (joint ? page.gearboxes[value(joint, row)]?.family : "ISSPG");
       return {
-        x: front.map((row) => trials.columns[FIRST][row] * quantity[FIRST].scale), y: front.map((row) => trials.columns[variable.name][row] * q.scale),
-        mark: front.map((row) => (family(row) === "ESSPG" ? "diamond" : "circle")), opacity: front.map((row) => (inRanges(i, row) ? 0.8 : 0.12)),
-        colours: trials.columns.motor ? front.map((row) => `var(--c${motorTint(kitOf(page.studies[i], row))})`) : null,
-        colour: several ? `var(--c${i % 6})` : "var(--c0)",
+        x: rows.map((row) => value(FIRST, row) * quantity[FIRST].scale), y: rows.map((row) => value(variable.name, row) * q.scale), opacity,
+        mark: rows.map((row) => (family(row) === "ESSPG" ? "diamond" : "circle")), colour: studyColour(i),
+        colours: trials.columns.motor ? rows.map((row) => colour(`c${motorTint(kitOf(page.studies[i], row))}`)) : null,
       };
-    });
-    const title = `${q.label}${q.unit === ": 1" ? "" : `, ${q.unit}`}`;
-    const chart = smallChart({ width, height: 190, left: 40, x, y, title, xTitle: titled(FIRST), series, label: `${title}, against ${quantity[FIRST].label} along the front` });
-    for (const bound of limits) chart.svg.append(draw("line", { x1: chart.left, x2: chart.left + chart.w, y1: chart.toY(bound * q.scale), y2: chart.toY(bound * q.scale), stroke: "var(--faint)", "stroke-dasharray": "2 3" }));
+    };
+    const series = shownStudies.flatMap((i) => (filtered() ? [one(i, page.studies[i].front, 0.06), one(i, keptFront(i), 0.8)] : [one(i, page.studies[i].front, 0.8)]));
     const change = joint ? switchRatio() : null;
-    if (change !== null && change > y[0] && change < y[1]) {
-      chart.svg.append(draw("line", { x1: chart.left, x2: chart.left + chart.w, y1: chart.toY(change), y2: chart.toY(change), stroke: "var(--soft)", "stroke-width": 1.4 }));
-      chart.svg.append(text(chart.left + chart.w - 3, chart.toY(change) - 4, "ESSPG", "end"), text(chart.left + chart.w - 3, chart.toY(change) + 12, "ISSPG", "end"));
-    }
-    const dot = draw("circle", { r: 6, fill: "none", stroke: "var(--select)", "stroke-width": 2.5 });
-    chart.svg.append(dot);
-    dots.push({ dot, chart, variable, q });
-    box.append(chart.svg);
-  }
+    const line = change !== null && change > y[0] && change < y[1] ? [{ y: change, colour: colour("soft"), width: 1.4, words: "ESSPG" }, { y: change, colour: "rgba(0,0,0,0)", words: "ISSPG", below: true }] : [];
+    return { title: `${q.label}${q.unit === ": 1" ? "" : `, ${q.unit}`}`, x, y, xTitle: titled(FIRST), series, lines: [...limits.map((bound) => ({ y: bound, colour: faint, dash: "2px,3px" })), ...line] };
+  });
+  const columns = Math.max(Math.floor(box.clientWidth / (window.innerWidth <= PHONE_PX ? 170 : 290)), 1);
+  const places = subplots(box, cells, { columns, height: 190, key: `${box.clientWidth} ${x} ${faint} ${paperScale()} ${switchRatio()}` });
+  describe(box, `${page.variables.map((v) => quantity[v.name].label).join(", ")}, each against ${quantity[FIRST].label} along the front`);
+  dots = page.variables.map((variable, k) => {
+    const dot = make("div", { class: "ring small-ring", "aria-hidden": "true" });
+    box.append(dot);
+    return { dot, chart: places[k], variable, q: quantity[variable.name] };
+  });
   moveDots();
   byId("along-note").textContent = `Each point is one design of the front. Dashed: bounds. Diamonds: ratios with a gearbox outside the motor (ESSPG), circles: inside its stator (ISSPG)${switchRatio() === null ? "" : `; the switch lies at ${switchRatio()} : 1`}.${switchesText()}`;
   const whose = (study) => (page.studies.length > 1 ? `${study.label}: ` : "");
@@ -182,18 +138,23 @@ function switchesText() {
 function moveDots() {
   const chosen = subject();
   for (const { dot, chart, variable, q } of dots) {
-    const first = chosen?.measures[FIRST];
-    const cx = first === null || first === undefined ? -1 : chart.toX(first * quantity[FIRST].scale);
-    const inside = cx >= chart.left && cx <= chart.left + chart.w;
-    dot.setAttribute("display", inside ? "inline" : "none");
-    if (!inside) continue;
-    dot.setAttribute("cx", cx);
-    dot.setAttribute("cy", chart.toY(chosen.values[variable.name] * q.scale));
+    const first = chosen?.measures[FIRST] ?? null;
+    const x = first === null ? -1 : chart.toX(first * quantity[FIRST].scale);
+    dot.hidden = !(x >= chart.left && x <= chart.left + chart.w);
+    if (!dot.hidden) Object.assign(dot.style, { left: `${x}px`, top: `${chart.toY(chosen.values[variable.name] * q.scale)}px` });
   }
 }
 
 function startLines() {
-  on("selection", (how) => { drawTimes(); if (how.other) drawAlong(); else moveDots(); });
+  let again = () => {};
+  on("selection", (how) => { again(); if (how.other) alongAgain(); else moveDots(); });
   on("time", moveCursors);
-  on("view", lazily("along-charts", drawAlong));
+  again = lazily("time-charts", drawTimes);
+  const alongAgain = lazily("along-charts", drawAlong);
+  on("view", alongAgain);
+  for (const [id, redraw] of [["time-charts", again], ["along-charts", alongAgain]]) {
+    const node = byId(id);
+    let width = node.clientWidth;
+    new ResizeObserver(() => { if (node.clientWidth !== width) { width = node.clientWidth; redraw(); } }).observe(node);
+  }
 }

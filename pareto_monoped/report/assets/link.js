@@ -16,6 +16,7 @@ function numberText(value) { return value === null ? "" : String(Number(value.to
 const WRITERS = {
   at: (s) => (s.caseName !== null ? [`${s.study}:case:${encodeURIComponent(s.caseName)}`] : s.row === null ? [] : [placeOf(s.study, s.row)]),
   range: (s) => Object.entries(s.ranges).map(([name, [least, most]]) => `${name}:${numberText(least)}:${numberText(most)}`),
+  best: (s) => [s.best.replace(" ", ":")],
   hide: (s) => page.studies.map((_, i) => i).filter((i) => !s.visible.has(i)).map(String),
   without: (s) => [...s.withoutMotors].sort((a, b) => a - b).map(String),
   keep: (s) => s.shortlist.map(({ study, row, note }) => `${placeOf(study, row)}:${encodeURIComponent(note)}`),
@@ -25,6 +26,7 @@ const WRITERS = {
   size: (s) => [s.axes.size],
   log: (s) => [`${s.axes.logX ? "x" : ""}${s.axes.logY ? "y" : ""}`],
   space: (s) => [s.axes.space ? "1" : ""],
+  zoom: (s) => (s.view ? [[...s.view.x, ...s.view.y].map(numberText).join(":")] : []),
   layers: (s) => [Object.keys(s.layers).filter((key) => s.layers[key]).join(",")],
   rows: (s) => [s.table.rows],
   columns: (s) => (s.table.columns === null ? [] : [s.table.columns.join(",")]),
@@ -44,6 +46,10 @@ const READERS = {
       s.ranges[known(name)] = [least, most];
     }
   },
+  best: (s, [text]) => {
+    const [word, name] = text.split(":");
+    s.best = name === undefined ? oneOf(word, ["", "knee", "compromise"]) : `${oneOf(word, ["least", "most"])} ${known(name)}`;
+  },
   hide: (s, texts) => { for (const text of texts) s.visible.delete(studyOf(text)); },
   without: (s, texts) => { for (const text of texts) s.withoutMotors.add(oneOf(Number(text), KITS)); },
   keep: (s, texts) => {
@@ -59,6 +65,11 @@ const READERS = {
   size: (s, [text]) => { s.axes.size = text && axisNamed(text); },
   log: (s, [text]) => { Object.assign(s.axes, { logX: text.includes("x"), logY: text.includes("y") }); },
   space: (s, [text]) => { s.axes.space = text === "1"; },
+  zoom: (s, [text]) => {
+    const ends = text.split(":").map(Number);
+    if (ends.length !== 4 || !ends.every(Number.isFinite) || ends[0] >= ends[1] || ends[2] >= ends[3]) throw new Error(`zoom ${text}`);
+    s.view = { x: ends.slice(0, 2), y: ends.slice(2) };
+  },
   layers: (s, [text]) => {
     const wanted = text.split(",").filter(Boolean).map((key) => oneOf(key, Object.keys(s.layers)));
     for (const key of Object.keys(s.layers)) s.layers[key] = wanted.includes(key);

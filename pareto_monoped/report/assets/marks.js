@@ -31,7 +31,7 @@ function picture(symbol, size, tint, scale) {
   const canvas = document.createElement("canvas");
   const reach = Math.ceil(0.62 * size + 2);
   canvas.width = canvas.height = 2 * reach * scale;
-  const context = canvas.getContext("2d");
+  const context = softly(canvas);
   context.scale(scale, scale);
   context.translate(reach, reach);
   const open = symbol.endsWith("-open");
@@ -54,13 +54,43 @@ function tintOf(marker, i) {
   return own === null || Number.isNaN(own) ? colour("faint") : RAMP_TEXT[shadeOf(own, ...marker.ramp)];
 }
 
+// A canvas that is read back as an image, and so is better kept out of the graphics card.
+function softly(canvas) { return canvas.getContext("2d", { willReadFrequently: true }); }
+
+const FAINT = 0.3; // marks below it are faint together, however many lie over each other
+
 function paintMarks(context, layer, scale) {
-  const { marker, px, py } = layer;
+  const { marker, px, py } = layer, faint = new Map(), drawn = new Map(), here = context.getTransform();
+  const place = (to, i) => {
+    if (Number.isNaN(px[i]) || Number.isNaN(py[i])) return;
+    const made = picture(entry(marker.symbol, i) ?? "circle", entry(marker.size, i), tintOf(marker, i), scale), { canvas, reach } = made;
+    // One mark exactly over another is drawn once.
+    if (!drawn.has(made)) drawn.set(made, new Set());
+    const at = Math.round(2 * px[i]) * 65536 + Math.round(2 * py[i]), known = drawn.get(made), size = known.size;
+    if (known.add(at).size > size) to.drawImage(canvas, px[i] - reach, py[i] - reach, 2 * reach, 2 * reach);
+  };
   for (let i = 0; i < px.length; i += 1) {
-    if (Number.isNaN(px[i]) || Number.isNaN(py[i])) continue;
-    const { canvas, reach } = picture(entry(marker.symbol, i) ?? "circle", entry(marker.size, i), tintOf(marker, i), scale);
-    context.globalAlpha = entry(marker.opacity ?? 1, i);
-    context.drawImage(canvas, px[i] - reach, py[i] - reach, 2 * reach, 2 * reach);
+    const opacity = entry(marker.opacity ?? 1, i);
+    if (opacity < FAINT) {
+      if (!faint.has(opacity)) {
+        const sheet = softly(make("canvas", { width: context.canvas.width, height: context.canvas.height }));
+        sheet.setTransform(here);
+        faint.set(opacity, sheet);
+      }
+      place(faint.get(opacity), i);
+    }
+  }
+  for (const [opacity, sheet] of faint) {
+    context.globalAlpha = opacity;
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.drawImage(sheet.canvas, 0, 0);
+    context.setTransform(here);
+  }
+  drawn.clear();
+  for (let i = 0; i < px.length; i += 1) {
+    const opacity = entry(marker.opacity ?? 1, i);
+    context.globalAlpha = opacity;
+    if (opacity >= FAINT) place(context, i);
   }
   context.globalAlpha = 1;
 }
@@ -83,68 +113,24 @@ function disc(radius) {
 }
 
 // Dots over each other darken: a crowd shows as one. Tens of thousands take some milliseconds.
-function paintCloud(image, layer, scale) {
+function paintCloud(image, layer, scale, left, top) {
   const { width, height, data } = image;
   const { marker, px, py } = layer;
   const one = marker.ramp || Array.isArray(marker.color) ? null : rgbOf(marker.color);
   const none = rgbOf(colour("faint"));
   for (let i = 0; i < px.length; i += 1) {
-    const cx = Math.round(px[i] * scale), cy = Math.round(py[i] * scale);
+    const cx = Math.round((px[i] - left) * scale), cy = Math.round((py[i] - top) * scale);
     if (!(cx > -9 && cy > -9 && cx < width + 9 && cy < height + 9)) continue;
     const own = one ?? (marker.ramp ? (Number.isNaN(marker.color[i]) || marker.color[i] === null ? none : rampColour(shadeOf(marker.color[i], ...marker.ramp))) : rgbOf(marker.color[i]));
     const alpha = entry(marker.opacity, i);
     for (const [dx, dy, cover] of disc(0.5 * scale * entry(marker.size, i))) {
       const x = cx + dx, y = cy + dy;
       if (x < 0 || y < 0 || x >= width || y >= height) continue;
-      const k = 4 * (y * width + x), above = alpha * cover, below = data[k + 3] / 255 * (1 - above), all = above + below;
+      const k = 4 * (y * width + x), above = alpha * cover, before = data[k + 3] / 255, below = alpha < 0.1 ? Math.max(before - above, 0) : before * (1 - above), all = above + below;
       data[k] = (own[0] * above + data[k] * below) / all;
       data[k + 1] = (own[1] * above + data[k + 1] * below) / all;
       data[k + 2] = (own[2] * above + data[k + 2] * below) / all;
       data[k + 3] = 255 * all;
     }
   }
-}
-
-const DASHES = { solid: [], dash: [7, 4], dot: [1.5, 3.5], dashdot: [7, 3, 1.5, 3], longdash: [12, 4], longdashdot: [12, 3, 1.5, 3] };
-
-// A line through the points; "hv" goes across first, then up, "vh" the other way round.
-function paintLine(context, { px, py, line }) {
-  context.beginPath();
-  let pen = false;
-  for (let i = 0; i < px.length; i += 1) {
-    if (Number.isNaN(px[i]) || Number.isNaN(py[i])) { pen = false; continue; }
-    if (!pen) context.moveTo(px[i], py[i]);
-    else {
-      if (line.shape === "hv") context.lineTo(px[i], py[i - 1]);
-      if (line.shape === "vh") context.lineTo(px[i - 1], py[i]);
-      context.lineTo(px[i], py[i]);
-    }
-    pen = true;
-  }
-  Object.assign(context, { strokeStyle: line.color, lineWidth: line.width ?? 1.5, globalAlpha: line.opacity ?? 1, lineJoin: "round" });
-  context.setLineDash(DASHES[line.dash ?? "solid"]);
-  context.stroke();
-  context.setLineDash([]);
-  context.globalAlpha = 1;
-}
-
-function paintArea(context, { px, py, py2, fill }) {
-  context.beginPath();
-  for (let i = 0; i < px.length; i += 1) context.lineTo(px[i], py[i]);
-  for (let i = px.length - 1; i >= 0; i -= 1) context.lineTo(px[i], py2[i]);
-  Object.assign(context, { fillStyle: fill, globalAlpha: 0.2 });
-  context.fill();
-  context.globalAlpha = 1;
-}
-
-// Bars from the least to the most of a point in x and y, where there are any.
-function paintBars(context, { bars, line }) {
-  context.beginPath();
-  for (const [x1, x2, y1, y2, x, y] of bars) {
-    if (x1 !== null) { context.moveTo(x1, y); context.lineTo(x2, y); }
-    if (y1 !== null) { context.moveTo(x, y1); context.lineTo(x, y2); }
-  }
-  Object.assign(context, { strokeStyle: line.color, lineWidth: line.width ?? 1, globalAlpha: line.opacity ?? 0.6 });
-  context.stroke();
-  context.globalAlpha = 1;
 }

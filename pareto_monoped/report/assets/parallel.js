@@ -16,11 +16,6 @@ function valueAtY(name, y) {
   return par.scales[name].value(Math.min(Math.max(share, 0), 1));
 }
 
-function feasibleRows(study) {
-  if (!study.feasible) study.feasible = [...study.trials.state].flatMap((letter, row) => (letter === "f" ? [row] : []));
-  return study.feasible;
-}
-
 // Each axis from bound to bound, or over all feasible trials; logarithmic where most of it would be empty.
 function prepareScales() {
   for (const name of AXES) {
@@ -42,9 +37,9 @@ function linesToDraw() {
   const others = [], onFronts = [];
   for (const i of state.visible) {
     const study = page.studies[i];
-    const onFront = new Set(study.front);
+    const front = keptFront(i), onFront = new Set(front);
     if (state.layers.cloud) for (const row of feasibleRows(study)) if (!onFront.has(row) && inRanges(i, row)) others.push([i, row]);
-    for (const row of study.front) if (inRanges(i, row)) onFronts.push([i, row]);
+    for (const row of front) onFronts.push([i, row]);
   }
   par.all = onFronts.length + others.length;
   par.front = thinnedTo(onFronts, MOST_OF_FRONT);
@@ -143,15 +138,14 @@ function describeRanges() {
   const drawn = par.front.length + par.others.length;
   const words = drawn < par.all ? `Drawn are ${drawn} of ${par.all} designs, evenly along the front and among the others.` : "";
   if (!filtered()) { note.textContent = words; return; }
-  let onFront = 0, fronts = 0, all = 0, total = 0;
+  let onFront = 0, all = 0, total = 0;
   for (const i of state.visible) {
     const study = page.studies[i];
-    fronts += study.front.length;
     onFront += keptFront(i).length;
     total += feasibleRows(study).length;
     all += feasibleRows(study).filter((row) => inRanges(i, row)).length;
   }
-  note.textContent = `Within the conditions: ${onFront} of ${fronts} designs on the front, ${all} of ${total} feasible trials on this page. ${words} `;
+  note.textContent = `Within the conditions: ${onFront} designs on the front, ${all} of ${total} feasible trials on this page. ${words} `;
   const clear = make("button", { type: "button", id: "clear-ranges" }, "Drop all conditions");
   clear.addEventListener("click", clearConditions);
   note.append(clear);
@@ -161,7 +155,7 @@ function fillFields() {
   for (const name of AXES) {
     par.fields[name].forEach((field, side) => {
       const end = state.ranges[name]?.[side] ?? null;
-      if (document.activeElement !== field) field.value = end === null ? "" : Number((end * quantity[name].scale).toPrecision(5));
+      if (document.activeElement !== field) field.value = end === null ? "" : Number((end * quantity[name].scale).toPrecision(9));
     });
   }
 }
@@ -235,7 +229,7 @@ function listenToAxes() {
     if (!drag?.name || event.pointerType === "touch") return;
     const [, y] = at(event);
     if (Math.abs(y - drag.y) > 4) drag.moved = true;
-    if (drag.moved) setRange(drag.name, [valueAtY(drag.name, drag.y), valueAtY(drag.name, y)].sort((a, b) => a - b), false);
+    if (drag.moved) setRange(drag.name, [drag.y, y].map((one) => Number(valueAtY(drag.name, one).toPrecision(5))).sort((a, b) => a - b), false);
   });
   par.node.addEventListener("pointerup", (event) => {
     if (!drag) return;

@@ -1,5 +1,7 @@
 // What all charts share: drawing when they come into view, names, legends, printing.
 
+const DASHES = { solid: [], dash: [7, 4], dot: [1.5, 3.5], dashdot: [7, 3, 1.5, 3], longdash: [12, 4], longdashdot: [12, 3, 1.5, 3] };
+
 // Draws a chart when it comes near the view; later changes wait until it is there again. Returns what asks for a redraw.
 function lazily(id, render) {
   const node = byId(id);

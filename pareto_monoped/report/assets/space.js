@@ -77,9 +77,9 @@ class SpaceChart extends Chart {
     return all.reduce((best, next) => (far(next) > far(best) ? next : best));
   }
 
-  // A frame drawn with the mouse turns the view instead.
-  zoomTo(from, to) {
-    if (!this.space) { super.zoomTo(from, to); return; }
+  // Dragging turns the view.
+  dragged(from, to) {
+    if (!this.space) return;
     this.tilt = Math.min(Math.max(this.tilt + (to[1] - from[1]) * 0.25, 0), 80);
     this.turnTo(this.turn + (to[0] - from[0]) * TURN_PER_PX);
   }

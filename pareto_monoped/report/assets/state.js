@@ -4,10 +4,12 @@
 //   state.study, .row, .caseName  the selection: a study's index with a row of its trials, or with the name of a case
 //   state.visible                 Set of the indices of the studies shown
 //   state.withoutMotors           Set of the kits of motors whose designs are not wanted
+//   state.best                    the way to choose: "", "knee", "compromise", "least NAME" or "most NAME" (choose.js)
 //   state.ranges                  { measure or variable: [least, most] } in stored units (SI); null: that side is open
 //   state.shortlist               [{ study, row, note }], at most SHORTLIST_MOST
 //   state.axes                    { x, y, colour, size: a measure or variable, logX, logY, space: booleans };
 //                                 colour "auto": a third objective, else the study or the motor; size "": all alike
+//   state.view                    { x: [low, high], y: [low, high] } as shown where the front chart is zoomed, else null
 //   state.layers                  what the front chart shows: { front, cloud, infeasible, ... : boolean }
 //   state.table                   { rows: "front" or "all", columns: names or null, sort: name, down: boolean, find }
 //
@@ -15,14 +17,14 @@
 //   current(), place()            the selected study; the selection's place on its front, or -1
 //   meets(study, row)             whether a trial obeys all conditions (ranges, motors, studies shown)
 //   inRanges(study, row)          the same without the studies shown
-//   keptFront(study)              rows of a study's front that obey the conditions, in the front's order
+//   keptFront(study)              rows of a study's front within the conditions (choose.js), by its first objective
 //   filtered()                    whether ranges or motors keep some designs out
 //   shortlisted(study, row)       place on the shortlist, or -1
 //   valueAt, columnOf, knownNames (data.js) and subject() (subject.js): numbers of a trial
 //
 // To change it
 //   select(study, row, byUser), selectCase(study, name), moveAlongFront(steps), moveToStudy(step)
-//   setRange(name, [least, most] or null, final), clearConditions(), showStudy(i, on), showMotor(kit, on)
+//   setRange(name, [least, most] or null, final), clearConditions(), showStudy(i, on), showMotor(kit, on), setBest(way)
 //   setAxes({...}), showLayer(key, on), setTable({...})
 //   keep(study, row), drop(study, row), setNote(study, row, text)
 //   undo(), redo(), resetState()
@@ -40,7 +42,7 @@ function freshState() {
   const [study, row] = firstSelection();
   return {
     study, row, caseName: null,
-    visible: new Set(page.studies.map((_, i) => i)), withoutMotors: new Set(), ranges: {}, shortlist: [],
+    visible: new Set(page.studies.map((_, i) => i)), withoutMotors: new Set(), ranges: {}, best: "", shortlist: [], view: null,
     axes: { x: SECOND, y: FIRST, colour: "auto", size: "", logX: false, logY: false, space: false },
     layers: { front: true, cloud: true, infeasible: false, published: true, simulated: true, picks: true, floor: true, spread: true, robust: true },
     table: { rows: "front", columns: null, sort: FIRST, down: false, find: "" },
@@ -118,23 +120,9 @@ function moveToStudy(step) {
 
 function filtered() { return Object.keys(state.ranges).length > 0 || state.withoutMotors.size > 0; }
 
-function inRanges(study, row) {
-  const { motor } = page.studies[study].trials.columns;
-  if (motor && state.withoutMotors.has(motor[row])) return false;
-  for (const name of Object.keys(state.ranges)) {
-    const [least, most] = state.ranges[name];
-    const value = valueAt(study, name, row);
-    if (value === null || (least !== null && value < least) || (most !== null && value > most)) return false;
-  }
-  return true;
-}
+function inRanges(study, row) { return !filtered() || masked(study)[row] === 1; }
 
 function meets(study, row) { return state.visible.has(study) && inRanges(study, row); }
-
-function keptFront(study) {
-  const { front } = page.studies[study];
-  return filtered() ? front.filter((row) => inRanges(study, row)) : front;
-}
 
 // While a range is dragged it is not final: only what is quick to draw follows.
 function setRange(name, range, final = true) {
@@ -149,6 +137,8 @@ function clearConditions() {
   changed("conditions", { final: true });
 }
 
+function setBest(way) { state.best = way; changed("conditions", { final: true }); }
+
 function showStudy(study, shown) { put(state.visible, study, shown); changed("conditions", { final: true }); }
 
 function showMotor(kit, shown) { put(state.withoutMotors, kit, !shown); changed("conditions", { final: true }); }
@@ -160,7 +150,9 @@ function put(set, entry, there) {
 
 // Axes, layers, table.
 
-function setAxes(axes) { Object.assign(state.axes, axes); changed("axes"); }
+function setAxes(axes) { Object.assign(state.axes, axes); state.view = null; changed("axes"); }
+
+function setView(view) { state.view = view; remember("view"); }
 
 function showLayer(key, shown) { state.layers[key] = shown; changed("layers"); }
 

@@ -38,6 +38,9 @@ function whyOf(study, row, at) {
   const picked = study.picks.find((p) => p.row === row);
   if (picked) return picked.why.replace(/^trial \d+ \(.*?\): /, "");
   if (study.ill_conditioned.includes(row)) return "taken off the front by its audit";
-  if (at >= 0) return `on the front, ${at + 1} of ${study.front.length}`;
-  return { f: "feasible, but dominated", i: "infeasible: breaks a constraint", x: "failed: no jump" }[study.trials.state[row]];
+  const kept = keptFront(page.studies.indexOf(study)), place = kept.indexOf(row);
+  const unseen = Object.keys(study.audits).length && !study.audits[study.trials.trial[row]] ? "; not audited" : "";
+  if (place >= 0) return `on the front${filtered() ? " within the conditions" : ""}, ${place + 1} of ${kept.length}${unseen}`;
+  if (at >= 0) return `on the front, ${at + 1} of ${study.front.length}, but not within the conditions`;
+  return { f: `feasible, but dominated${unseen}`, i: "infeasible: breaks a constraint", x: "failed: no jump" }[study.trials.state[row]];
 }

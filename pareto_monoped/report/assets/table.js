@@ -21,7 +21,7 @@ function tableRows() {
   const { rows, sort, down, find } = state.table;
   const wanted = find.trim().toLowerCase();
   const list = [...state.visible].sort((a, b) => a - b).flatMap((study) => {
-    const own = rows === "front" ? page.studies[study].front : page.studies[study].trials.trial.map((_, row) => row);
+    const own = rows === "front" ? keptFront(study) : page.studies[study].trials.trial.map((_, row) => row);
     return own.filter((row) => inRanges(study, row) && (!wanted || wordsOf(study, row).includes(wanted))).map((row) => [study, row]);
   });
   const columns = page.studies.map((_, i) => columnOf(i, sort));
@@ -47,8 +47,8 @@ function drawTable() {
   });
   byId("rows-head").replaceChildren(make("tr", {}, make("th", { scope: "col" }, "keep"), make("th", { scope: "col" }, "trial"), ...(several ? [make("th", { scope: "col" }, "study")] : []), ...(state.table.rows === "all" ? [make("th", { scope: "col" }, "state")] : []), ...heads));
   byId("rows-table").setAttribute("aria-rowcount", tab.list.length + 1);
-  const total = [...state.visible].reduce((sum, i) => sum + (state.table.rows === "front" ? page.studies[i].front.length : page.studies[i].trials.trial.length), 0);
-  byId("rows-note").textContent = `${tab.list.length} of ${total} ${state.table.rows === "front" ? "designs of the front" : "trials"}${filtered() ? " obey the conditions" : ""}.`;
+  const total = [...state.visible].reduce((sum, i) => sum + (state.table.rows === "front" ? keptFront(i).length : page.studies[i].trials.trial.length), 0);
+  byId("rows-note").textContent = `${tab.list.length} of ${total} ${state.table.rows === "front" ? `designs of the front${filtered() ? " within the conditions" : ""}` : `trials${filtered() ? " obey the conditions" : ""}`}.`;
   tab.first = -1;
   drawRows();
 }
@@ -134,6 +134,10 @@ function startTable() {
   startCondition();
   follow();
   tab.frame.addEventListener("scroll", drawRows);
+  tab.body.addEventListener("click", (event) => {
+    const line = event.target.closest("[data-row]");
+    if (line && !event.target.closest("input, button")) select(...line.dataset.row.split(":").map(Number));
+  });
   on("table", () => { follow(); redraw(); });
   on("conditions", ({ final }) => { if (final) redraw(); });
   on("selection", markRows);
@@ -160,7 +164,7 @@ function startCondition() {
     const { scale } = quantity[choice.value];
     [from, to].forEach((field, side) => {
       const end = state.ranges[choice.value]?.[side] ?? null;
-      if (document.activeElement !== field) field.value = end === null ? "" : Number((end * scale).toPrecision(6));
+      if (document.activeElement !== field) field.value = end === null ? "" : Number((end * scale).toPrecision(9));
     });
   };
   if (!choice.value) { choice.closest(".filter").hidden = true; return; }
