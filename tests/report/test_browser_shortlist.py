@@ -161,7 +161,7 @@ def test_without_scripts_the_tables_are_there(made, browser):
     context = browser.new_context(java_script_enabled=False)
     tab = context.new_page()
     tab.goto(made.file.as_uri())
-    text = tab.inner_text("body")
+    text = tab.text_content("body")
     assert "need JavaScript" in text
     for words in ("Among published jumping robots", "The paper's designs (Table I)", "m J from", "is reproduced by"):
         assert words in text

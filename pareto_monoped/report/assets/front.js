@@ -67,8 +67,8 @@ function hoverText(study, row) {
   const named = new Set([...page.goals, x, y, tinted(), size].filter((name) => name && !(PAPERS_OWN && page.objectives.includes(name))));
   for (const name of named) lines.push(`${plain(quantity[name].label)} ${shown(name, valueAt(study, name, row))}`);
   for (const variable of page.variables) if (!named.has(variable.name)) lines.push(`${quantity[variable.name].label} ${shown(variable.name, columns[variable.name][row])}`);
-  if (columns.motor) lines.push(`motor ${plain(motorOf(card, row))}`);
   if (dearWords(study, row)) lines.push("⚠ dear at the battery");
+  if (columns.motor) lines.push(`motor ${plain(motorOf(card, row))}`);
   return lines.join("<br>");
 }
 

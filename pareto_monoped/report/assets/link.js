@@ -213,8 +213,7 @@ function startLink() {
     const next = readAddress();
     if (next) { restore(next); remember(); }
   });
-  window.addEventListener("pagehide", writeNow);
-  document.addEventListener("visibilitychange", writeNow);
+  for (const [target, event] of [[window, "pagehide"], [document, "visibilitychange"]]) target.addEventListener(event, () => { if (past.writing) writeNow(); });
   document.addEventListener("keydown", (event) => {
     if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.closest("textarea, input:not([type=checkbox]):not([type=range])")) return;
     const key = event.key.toLowerCase();
