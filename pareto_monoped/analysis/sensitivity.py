@@ -84,14 +84,14 @@ def importances(data: StudyData, names: Sequence[str]) -> dict[str, dict[str, fl
         )
         optuna.logging.set_verbosity(verbosity)
         evaluator = optuna.importance.PedAnovaImportanceEvaluator()
+        found: dict[str, dict[str, float]] = {}
+        for name in rated:
 
-        def of(name: str) -> dict[str, float]:
-            def value(trial: optuna.trial.FrozenTrial) -> float:
+            def value(trial: optuna.trial.FrozenTrial, name: str = name) -> float:
                 return float(trial.user_attrs[name])
 
-            return optuna.importance.get_param_importances(study, evaluator=evaluator, target=value)
-
-        return {name: of(name) for name in rated}
+            found[name] = optuna.importance.get_param_importances(study, evaluator=evaluator, target=value)
+        return found
 
 
 def sensitivity(

@@ -141,7 +141,9 @@ function wayOf(key) {
 }
 
 // The design that the conditions and the way to choose ask for, as { design, words, count, onFront }; null without any.
-function chosenDesign(key = state.best) {
+function chosenDesign() { return keptWithin(`chosen ${state.best}`, () => foundDesign(state.best)); }
+
+function foundDesign(key) {
   const table = pooled((study) => { const mask = masked(study); return soundRows(study).filter((row) => mask[row]); });
   if (!table.size) return null;
   const way = wayOf(key), cost = way.cost(table), { costs, size } = table;
