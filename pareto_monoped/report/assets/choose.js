@@ -151,7 +151,9 @@ function foundDesign(key) {
   const ahead = (i, j) => { let gain = cost[j] - cost[i]; for (const one of costs) gain ||= one[j] - one[i]; return gain; };
   let best = -1;
   for (const i of way.front ? inside.sort((i, j) => i - j) : counted(size)) if (!Number.isNaN(cost[i]) && (best < 0 || ahead(i, best) > 0)) best = i;
-  return best < 0 ? null : { design: table.stand(best), words: way.words, count: size, onFront: inside.length };
+  if (best < 0) return null;
+  const design = table.stand(best), name = key.split(" ")[1];
+  return { design, words: name ? `${way.words}, ${shown(name, valueAt(design[0], name, design[1]))},` : way.words, count: size, onFront: inside.length };
 }
 
 const DEAR = 1.5, BATTERY = "electrical_energy_j";

@@ -12,7 +12,7 @@ function subplots(node, cells, { columns = 1, height = 130, key = null }) {
     const w = across - CELL.left - CELL.right, h = height - CELL.top - CELL.bottom;
     return { left, top, w, h, toX: (value) => left + (value - x[0]) / (x[1] - x[0] || 1) * w, toY: (value) => top + h - (value - y[0]) / (y[1] - y[0] || 1) * h };
   });
-  const layout = { width, height: all, margin: { l: 0, r: 0, t: 0, b: 0, pad: 0 }, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { ...FONT, size: 11, color: colour("soft") }, showlegend: false, hovermode: false, dragmode: false, images: [], shapes: [], annotations: [] };
+  const layout = { width, height: all, margin: { l: 0, r: 0, t: 0, b: 0, pad: 0 }, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { ...FONT, size: 11, color: colour("soft") }, showlegend: false, hovermode: false, dragmode: false, modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("faint"), activecolor: colour("c0") }, images: [], shapes: [], annotations: [] };
   const traces = [], own = (k) => (k ? k + 1 : "");
   cells.forEach((cell, k) => {
     const { left, top, w, h, toX, toY } = places[k], [xref, yref] = [`x${own(k)}`, `y${own(k)}`];
