@@ -139,7 +139,7 @@ def test_commands_understand_the_names(made, capsys):
     assert max(map(len, lines)) <= 80
     assert "height p05 m" in lines[0]
     assert cli(["pick", str(made), "--min", "mass_kg.p95=1"]) != 0
-    assert "no design on the front has a value of it" in capsys.readouterr().err
+    assert "no design has a value of it" in capsys.readouterr().err
     assert cli(["front", str(made), "--objectives", "mass_kg.p95,height_m"]) != 0
     assert "no trial of" in capsys.readouterr().err
 
