@@ -239,7 +239,7 @@ def balanced(robots: RobotArrays, control: Floats, calibration: Calibration, wor
         population.run()
         alone = (take(robots, np.array([i])) for i in range(len(robots)))
         errors = [energy_balance(one, control[i : i + 1], calibration).error for i, one in enumerate(alone)]
-        return _balanced_of(population, np.array(errors))
+        return _finished(population, np.array(errors))
     pose = start_pose(robots, calibration)
     population = prepare(robots, control, pose, calibration, workers)
     damping = np.asarray(population.batch.expand("dof_damping"))
@@ -247,10 +247,10 @@ def balanced(robots: RobotArrays, control: Floats, calibration: Calibration, wor
     supplied, lost, qpos, qvel = _jumped(population, calibration, damping)
     weighed = prepare(robots, control, pose, calibration, workers).batch
     gained = _energies_j(weighed, qpos - back_s(calibration) * qvel, qvel) - _energies_j(weighed, start, 0.0)
-    return _balanced_of(population, np.abs(supplied - gained - lost) / np.maximum(np.abs(supplied), 1e-12))
+    return _finished(population, np.abs(supplied - gained - lost) / np.maximum(np.abs(supplied), 1e-12))
 
 
-def _balanced_of(population: Population, error: Floats) -> Balanced:
+def _finished(population: Population, error: Floats) -> Balanced:
     from pareto_monoped.jump.controller import APEX
 
     records = population.records

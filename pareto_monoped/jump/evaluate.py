@@ -24,7 +24,7 @@ from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.controller_record import HIP, KNEE
 from pareto_monoped.jump.engines import Jumping, population_of
 from pareto_monoped.jump.gravity import rise_m, standing_height_m
-from pareto_monoped.jump.model import start_pose
+from pareto_monoped.jump.model import longest_step_s, start_pose
 from pareto_monoped.jump.population import Records
 from pareto_monoped.jump.variations import Variations, joined, take, varied_control, varied_robots
 from pareto_monoped.measures import MEASURE_NAMES, JumpMeasures
@@ -190,7 +190,12 @@ def _jump(
     stands = np.array([not reason for reason in pose.reason], dtype=bool)
     for i in np.flatnonzero(built & ~stands):
         table.fail(rows[i], "cannot_stand", pose.reason[i])
-    ready = np.flatnonzero(built & stands)
+    step_s, longest_s = calibration.simulation.timestep_s, longest_step_s(robots, calibration)
+    follows = step_s <= longest_s
+    for i in np.flatnonzero(built & stands & ~follows):
+        most = f"timestep_s must be at most {1e6 * longest_s[i]:.0f} us"
+        table.fail(rows[i], "diverged", f"a step of {1e6 * step_s:.0f} us is too long for its elastic drives; {most}")
+    ready = np.flatnonzero(built & stands & follows)
     for start in range(0, len(ready), _CHUNK):
         chosen = ready[start : start + _CHUNK]
         jumping = take(robots, chosen)

@@ -18,6 +18,11 @@ from pareto_monoped.robot.population import RobotArrays
 from pareto_monoped.robot.units import JOINTS
 
 KNEE = JOINTS.index("knee")
+_STABLE = 1.4
+"""Of the 2 up to which a semi-implicit step is stable, because the joint gives way as well and a motor swings faster.
+
+By simulation: of 120 random designs of each of four motors, none goes wrong below 1.46.
+"""
 _COPPER_PER_K = 0.00393  #: Relative rise of copper's resistance per kelvin from 20 degC (IEC 60028).
 LEAST_IMPEDANCE = 0.0001  #: MuJoCo's smallest impedance (mjMINIMP), which a hardening spring has at first touch.
 
@@ -213,23 +218,39 @@ def joint_damping(robots: RobotArrays, joints: Joints) -> Floats:
     """Return viscous friction of hip and knee with their motors', N m s/rad, shape (n, 2)."""
     damping = joints.damping_n_m_s_per_rad + joints.motor_damping_n_m_s_per_rad * np.square(robots.ratio)
     if joints.motor_damping_share_s_per_rad:
-        damping = damping + joints.motor_damping_share_s_per_rad * robots.peak_torque_n_m * robots.ratio
+        damping = damping + joints.motor_damping_share_s_per_rad * robots.rated_torque_n_m * robots.ratio
     return damping
 
 
 def joint_friction_n_m(robots: RobotArrays, joints: Joints) -> Floats:
     """Return Coulomb friction of hip and knee, shape (n, 2)."""
-    return joints.friction_n_m + joints.friction_share * robots.peak_torque_n_m
+    return joints.friction_n_m + joints.friction_share * robots.rated_torque_n_m
 
 
 def drive_damping_n_m_s_per_rad(robots: RobotArrays, calibration: Calibration) -> Floats:
     """Return the damping of both elastic drives: 2 zeta sqrt(k C), shape (n, 2)."""
+    turning = _driven_kg_m2(robots, calibration)
+    ratio = calibration.drive.drive_damping_ratio
+    return np.asarray(2.0 * ratio * np.sqrt(robots.drive_stiffness_n_m_per_rad * turning))
+
+
+def longest_step_s(robots: RobotArrays, calibration: Calibration) -> Floats:
+    """Return the longest step that the springs of elastic drives allow, shape (n,); infinite for rigid ones.
+
+    It is a share of 1 / omega, with omega of a motor on its spring and the joint held.
+    """
+    if not calibration.drive.elastic:
+        return np.full(len(robots), np.inf)
+    turning = _driven_kg_m2(robots, calibration)
+    return np.asarray(_STABLE * np.sqrt(turning / robots.drive_stiffness_n_m_per_rad).min(axis=1))
+
+
+def _driven_kg_m2(robots: RobotArrays, calibration: Calibration) -> Floats:
+    """Return C of what turns with each motor, at its joint, shape (n, 2)."""
     turning = robots.armature_kg_m2.copy()
     if calibration.joints.rotors == "absolute":
         turning[:, KNEE] = robots.knee_reflected_kg_m2
-    return np.asarray(
-        2.0 * calibration.drive.drive_damping_ratio * np.sqrt(robots.drive_stiffness_n_m_per_rad * turning)
-    )
+    return turning
 
 
 def winding_resistance_ohm(robots: RobotArrays, drive: Drive) -> Floats:

@@ -87,7 +87,9 @@ class RobotArrays:
     #: of the chain that pulls; shape (n, 2)
     drive_stiffness_n_m_per_rad: Floats
     peak_torque_n_m: Floats  #: at the joint, before losses, shape (n, 2)
-    continuous_torque_n_m: Floats  #: likewise
+    #: The peak torque of the data sheet, which a motor of another torque constant also has; friction goes with it
+    rated_torque_n_m: Floats
+    continuous_torque_n_m: Floats  #: at the joint, before losses, shape (n, 2)
     no_load_speed_rad_per_s: Floats  #: at the joint, shape (n, 2)
     efficiency: Floats  #: of the gear meshes, shape (n, 2)
     efficiency_total: Floats  #: of the whole gearbox, shape (n, 2)
@@ -149,6 +151,7 @@ def robot_arrays(designs: ArrayLike, maps: Maps, options: MassOptions = PARTS_ON
         ratio=of_actuators("ratio"),
         **turning,
         peak_torque_n_m=of_actuators("peak_torque_n_m"),
+        rated_torque_n_m=of_actuators("peak_torque_n_m"),
         continuous_torque_n_m=of_actuators("continuous_torque_n_m"),
         no_load_speed_rad_per_s=of_actuators("no_load_speed_rad_per_s"),
         efficiency=of_actuators("efficiency"),

@@ -126,7 +126,7 @@ def _simulator(
     study: Study, motors: Sequence[Motor], calibration: Calibration, workers: int, executor: Executor | None
 ) -> Simulator:
     if study.engine == "compiled" and (lacks := calibration.lacks_for_compiled()):
-        allowed = f"'mujoco' with a calibration without {lacks}"
+        allowed = f"'mujoco', because calibration {calibration.name!r} does not have {lacks}"
         raise StudyError(complaint("engine", study.engine, allowed, "drop it, or choose another calibration"))
     if study.engine is not None:
         calibration = calibration.by(study.engine)

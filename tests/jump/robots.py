@@ -69,6 +69,7 @@ def plausible_robots(designs):
         sprocket_radius_m=np.full(n, 0.026),
         drive_stiffness_n_m_per_rad=np.tile([20000.0, 2000.0], (n, 1)),
         peak_torque_n_m=5.5 * ratio,
+        rated_torque_n_m=5.5 * ratio,
         continuous_torque_n_m=3.82 * ratio,
         no_load_speed_rad_per_s=502.65 / ratio,
         efficiency=0.97 * both,

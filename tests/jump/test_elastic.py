@@ -14,6 +14,7 @@ from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.document import mjcf
 from pareto_monoped.jump.end_stops import damping_s_per_m
 from pareto_monoped.jump.evaluate import Evaluator, evaluate_robots
+from pareto_monoped.jump.model import joint_damping, joint_friction_n_m, longest_step_s
 from pareto_monoped.jump.single import moments, trace_of
 from pareto_monoped.leg.chain import strand_compliance_m_per_n
 from pareto_monoped.leg.dimensions import leg_dimensions
@@ -173,6 +174,32 @@ def test_friction_and_damping_grow_with_motor_and_ratio():
             assert model.dof_frictionloss[place] == pytest.approx(0.0111 * 5.5 * ratio, rel=1e-12)
             assert model.dof_damping[place] == pytest.approx(4.6e-5 * 5.5 * ratio**2, rel=1e-12)
         assert not model.dof_frictionloss[:4].any()
+
+
+def test_a_weak_motor_rubs_as_much_as_a_strong_one_of_its_kind():
+    """A torque constant below the data sheet's changes the peak torque, and neither bearings nor seals."""
+    robots = robot_arrays(CASES, MAP)
+    weak = replace(robots, peak_torque_n_m=0.5 * robots.peak_torque_n_m)
+    for of_friction in (
+        lambda some: joint_damping(some, ELASTIC.joints),
+        lambda some: joint_friction_n_m(some, ELASTIC.joints),
+    ):
+        np.testing.assert_array_equal(of_friction(weak), of_friction(robots))
+
+
+def test_a_step_that_the_drives_cannot_follow_is_refused_and_makes_no_height():
+    """With 1 ms, springs blow up to jumps of many metres, or to wrong ones."""
+    for engine in ("compiled", "mujoco"):
+        slow = replace(ELASTIC.by(engine), simulation=replace(ELASTIC.by(engine).simulation, timestep_s=1e-3))
+        found = Evaluator(MAP, slow)(CASES)
+        assert set(found.status) == {"diverged"}
+        assert np.isnan(found.height_m).all()
+        assert "a step of 1000 us is too long for its elastic drives" in found.reason[0]
+    robots = robot_arrays(CASES, MAP)
+    frequency = np.sqrt(robots.drive_stiffness_n_m_per_rad[:, 0] / robots.armature_kg_m2[:, 0])
+    np.testing.assert_allclose(longest_step_s(robots, ELASTIC), 1.4 / frequency, rtol=1e-12)
+    longest = replace(ELASTIC, simulation=replace(ELASTIC.simulation, timestep_s=5e-4))
+    assert (Evaluator(MAP, longest)(CASES).height_m < 1.1).all()
 
 
 def test_the_bus_sums_both_motors_before_it_cuts_off():

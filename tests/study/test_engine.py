@@ -55,7 +55,9 @@ def test_a_study_keeps_its_engine(tmp_path):
 
 
 def test_an_engine_that_cannot_is_refused_in_one_line(tmp_path):
-    with pytest.raises(InputError, match=r"engine.*'compiled'.*without joints\.stop_law 'hunt_crossley'.*drop it"):
+    with pytest.raises(
+        InputError, match=r"engine.*'compiled'.*'reference' does not have joints\.stop_law 'hunt_crossley'; drop it"
+    ):
         made(tmp_path, calibration="reference", engine="compiled")
     assert not list(tmp_path.iterdir())
     with pytest.raises(InputError, match="engine"):
