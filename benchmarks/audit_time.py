@@ -87,9 +87,9 @@ def agree_at_random() -> tuple[int, int]:
 
 def variants() -> Iterator[tuple[str, str, Calibration]]:
     """Name, motor and calibration of everything that the screen is compared with full audits under."""
-    reference = load_calibration("reference")
     for motor in MOTORS:
-        yield f"{motor}, reference", motor, reference
+        yield f"{motor}, reference", motor, load_calibration("reference")
+    reference = load_calibration("reference-3")
     for step_ms in STEPS_MS:
         step_s = step_ms * 1e-3
         timed = replace(reference.simulation, timestep_s=step_s, control_period_s=max(step_s, 1e-3))

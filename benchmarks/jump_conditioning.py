@@ -1,7 +1,7 @@
 """How accurate jumps are and what they cost: the tables of docs/model.md.
 
-Prints the conditioning of each calibration over 200 random designs, conditioning and speed of integrators and steps,
-and how each open choice of the model changes height and energy of two of the paper's designs.
+Prints the conditioning of each calibration over 200 random designs; and with rigid drives, conditioning and speed of
+integrators and steps, and how each open choice of the model changes height and energy of two of the paper's designs.
 
     python benchmarks/jump_conditioning.py [DESIGNS]
 """
@@ -36,13 +36,13 @@ def main(count: int) -> None:
     print(f"{count} random designs; median / 90th percentile / worst; inf: a jump was lost")
     print("| calibration | jump | 1e-6: height mm | energy % | half step: height mm | energy % |")
     print("|---|---|---|---|---|---|")
-    for name in ("reference", "reference-1", "ideal", "stand", "paper"):
+    for name in ("reference", "ideal", "stand", "reference-3", "reference-1", "paper"):
         calibration = load_calibration(name)
         print(f"| {name} | {' | '.join(_conditioning(designs, calibration))} |")
 
     print("\n| integrator | step ms | speed | 1e-6: height mm | energy % | half step: height mm | energy % |")
     print("|---|---|---|---|---|---|---|")
-    reference = load_calibration("reference")
+    reference = load_calibration("reference-3")
     steps: tuple[tuple[Literal["Euler", "implicitfast", "RK4"], float], ...] = (
         ("Euler", 0.5),
         ("Euler", 1.0),
@@ -111,14 +111,14 @@ def _speed(designs: Floats, calibration: Calibration, other: Calibration) -> flo
 
 
 def _choices(reference: Calibration) -> Iterator[tuple[str, Calibration]]:
-    """The reference calibration, then variants of it that differ in one choice each."""
+    """The last reference with rigid drives, then variants of it that differ in one choice each."""
     joints, drive, contact, gate = reference.joints, reference.drive, reference.contact, reference.gate
     assert isinstance(contact, SpringContact)
     assert isinstance(gate, FadeGate)
     hip, knee = end_stops(robot_arrays(DEFAULT_DESIGN, MAP), joints)
     assert knee is not None
-    yield "`reference`", reference
-    yield "`ideal` (no losses)", load_calibration("ideal")
+    yield "`reference-3`", reference
+    yield "`ideal-3` (no losses)", load_calibration("ideal-3")
     for scale in (0.0, 2.0, 20.0):
         damping = joints.damping_n_m_s_per_rad * scale
         yield (

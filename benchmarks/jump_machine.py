@@ -1,4 +1,4 @@
-"""What each part of the calibration `elastic` does to jumps: a table of docs/model.md.
+"""What each difference between the calibrations `reference-3` and `reference` does to jumps: a table of docs/model.md.
 
 Prints height, energies and peak loads of the paper's designs and of three from a front, with one difference after
 another.
@@ -22,13 +22,13 @@ FRONT = (
     (0.3903, 0.4999, 5.2, 4.0909, 5.0, 9.99, 0.0),
     (0.5, 0.4998, 7.0588, 4.0909, 5.717, 0.0, 0.06),
 )
-"""Of 2,000 jumps of studies/quick.toml under `elastic`, nearest to 0.8, 1.0 and 1.2 m."""
+"""Of 2,000 jumps of studies/quick.toml under `reference`, nearest to 0.8, 1.0 and 1.2 m."""
 
 
 def machines() -> Iterator[tuple[str, Calibration]]:
-    """Yield calibrations, each with one thing more than the one before, from ``reference`` to ``elastic``."""
-    now, wanted = load_calibration("reference"), load_calibration("elastic")
-    yield "`reference`", now
+    """Yield calibrations, each with one thing more than the one before, from ``reference-3`` to ``reference``."""
+    now, wanted = load_calibration("reference-3"), load_calibration("reference")
+    yield "`reference-3`", now
     now = replace(
         now,
         joints=replace(now.joints, stop_law=wanted.joints.stop_law),
@@ -41,7 +41,7 @@ def machines() -> Iterator[tuple[str, Calibration]]:
     yield "bus", now
     now = replace(now, drive=replace(now.drive, winding_rise_k=wanted.drive.winding_rise_k))
     yield "60 degC", now
-    yield "friction: `elastic`", wanted
+    yield "friction: `reference`", wanted
     yield "on the stand", on_stand(wanted)
 
 

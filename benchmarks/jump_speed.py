@@ -39,7 +39,7 @@ AGREEMENT = 1e-9
 
 def main(rounds: int) -> None:
     """Print one line per batch size; ``of raw`` is against ``mujoco.rollout``, ``of loop`` against the Python loop."""
-    calibration, actuators = load_calibration("reference"), map_for("VT8020")
+    calibration, actuators = load_calibration("reference-3"), map_for("VT8020")
     one, two = Evaluator(actuators, calibration, 1), Evaluator(actuators, calibration, 2)
     heads = ("us per step, one core", "of raw", "of a Python loop", "x naive", "gain by a second core")
     built = ("us per step, robots built", "of raw, robots built")

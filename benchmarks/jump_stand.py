@@ -19,13 +19,13 @@ MAP = map_for("VT8020")
 
 
 def machines() -> Iterator[tuple[str, Calibration]]:
-    """Yield calibrations, each with one thing more than the one before, from ``reference`` to ``stand``."""
-    reference = load_calibration("reference")
+    """Yield calibrations, each with one thing more than the one before, from ``reference-3`` to ``stand-1``."""
+    reference = load_calibration("reference-3")
     guided = replace(reference, simulation=replace(reference.simulation, base_slides=False))
-    yield "`reference`", reference
+    yield "`reference-3`", reference
     yield "the base moves in z only", guided
     yield "arms and carriages", replace(guided, stand=Stand(rail_friction_n=0.0))
-    yield "friction of the rails: `stand`", on_stand(reference)
+    yield "friction of the rails: `stand-1`", on_stand(reference)
 
 
 def main() -> None:

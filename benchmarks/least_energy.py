@@ -51,7 +51,7 @@ def jump(model: Any, data: Any, torques: Floats) -> tuple[float, float]:
 def main(count: int = 20, profiles: int = 5000, optimised: int = 5) -> None:
     """Print the nearest of all jumps of each robot."""
     rng = np.random.default_rng(0)
-    calibration = load_calibration("ideal")
+    calibration = load_calibration("ideal-3")  # whose stops MuJoCo has
     designs = rng.uniform(LOWER, UPPER, (count, len(LOWER)))
     robots = robot_arrays(designs, map_for("VT8020"), calibration.mass)
     for i in range(count):

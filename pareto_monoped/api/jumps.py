@@ -56,7 +56,7 @@ def load_calibration(name_or_path: StrPath = DEFAULT) -> Calibration:
     Example:
         >>> from pareto_monoped import load_calibration
         >>> load_calibration("reference").simulation.timestep_s
-        0.001
+        0.0002
     """
     return calibration_of(_name(name_or_path, "calibration", CalibrationError))
 

@@ -1,8 +1,8 @@
 """Calibrations: named, versioned records of everything that a jump depends on besides the robot.
 
 Shipped in ``data/calibrations`` are ``reference``, well-posed and the default; ``paper``, the paper's simulation with
-readings, fitted to its Table I; ``ideal``, which is ``reference`` without losses; and ``stand``, which is ``reference``
-on the rails of the test stand.
+readings, fitted to its Table I; ``ideal``, which is ``reference`` without losses and with rigid drives; and ``stand``,
+which is ``reference`` on the rails of the test stand. Versions before stand in ``earlier``.
 """
 
 import json
@@ -261,7 +261,7 @@ class Calibration(Strict):
         >>> known = load_calibration("reference")
         >>> slippery = replace(known, name="slippery", contact=replace(known.contact, friction=0.5))
         >>> slippery.label
-        'slippery-3'
+        'slippery-4'
     """
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]+$")]
@@ -354,7 +354,7 @@ def earlier_calibrations() -> tuple[str, ...]:
 
 @cache
 def _present_labels() -> Mapping[str, str]:
-    """Return the label of each shipped calibration's present version, such as ``reference-3`` -> its name."""
+    """Return the label of each shipped calibration's present version, such as ``reference-4`` -> its name."""
     return {load_calibration(name).label: name for name in calibration_names()}
 
 

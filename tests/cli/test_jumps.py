@@ -26,7 +26,7 @@ def test_simulate_json_has_what_others_rely_on(capsys):
     assert (code, err) == (0, "")
     report = json.loads(out)
     assert report["status"] == "ok"
-    assert report["calibration"] == "reference-3"
+    assert report["calibration"] == "reference-4"
     assert report["design"] == PAPER_CASES["C"].design.as_dict()
     for name in ("height_m", "energy_j", "foot_clearance_m", "mass_kg"):
         assert report[name] > 0.0
@@ -235,8 +235,8 @@ def test_the_named_motor_and_calibration_are_used(capsys):
         json.loads(run(capsys, "simulate", "--json", *more)[1])
         for more in ((), ("--motor", "U8", "--calibration", "ideal"))
     )
-    assert (default["motor"], default["calibration"]) == ("VT8020", "reference-3")
-    assert (other["motor"], other["calibration"]) == ("U8", "ideal-3")
+    assert (default["motor"], default["calibration"]) == ("VT8020", "reference-4")
+    assert (other["motor"], other["calibration"]) == ("U8", "ideal-4")
     assert other["height_m"] != default["height_m"]
 
 

@@ -127,7 +127,7 @@ def test_on_a_terminal_progress_is_a_bar(study, monkeypatch):
 FACTS = {
     "name": "s",
     "motor": "VT8020",
-    "calibration": "reference-3",
+    "calibration": "reference-4",
     "algorithm": "nsga2",
     "seed": 3,
     "free": ["knee_ratio", "hip_ratio"],

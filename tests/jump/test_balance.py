@@ -15,7 +15,7 @@ from pareto_monoped.leg.stops import knee_stop
 from pareto_monoped.robot.population import robot_arrays
 
 MAP = map_for("VT8020")
-REFERENCE = load_calibration()
+REFERENCE = load_calibration("reference-3")
 PAPER = complete(np.array([case.design.as_array() for case in PAPER_CASES.values()]))
 RANDOM = complete(np.random.default_rng(5).uniform(LOWER, UPPER, (100, len(LOWER))))
 

@@ -11,7 +11,8 @@ from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.single import simulate
 
-REFERENCE = load_calibration("reference")
+REFERENCE = load_calibration("reference-3")
+"""With rigid drives, whose motors have the speeds of the trace's joints (tests/jump/test_elastic.py has the others)."""
 STEP = REFERENCE.simulation.timestep_s
 
 
@@ -53,10 +54,11 @@ def test_the_hotter_motor_sets_the_rate_of_jumps():
         assert rate == pytest.approx(expected, rel=1e-9)
 
 
-def test_the_battery_pays_for_work_and_heat():
+@pytest.mark.parametrize("name", ["reference", "reference-3"])
+def test_the_battery_pays_for_work_and_heat(name):
     """Without power that flows back, the battery's energy lies between the heat alone and work and heat together."""
     designs = np.random.default_rng(2).uniform(LOWER, UPPER, (40, len(LOWER)))
-    found = Evaluator(map_for("VT8020"), REFERENCE)(designs)
+    found = Evaluator(map_for("VT8020"), load_calibration(name))(designs)
     ok = found.ok
     assert np.all(found.electrical_energy_j[ok] <= (found.energy_j + found.joule_heat_j)[ok] * (1.0 + 1e-12))
     assert np.all(found.electrical_energy_j[ok] >= (found.energy_j + found.joule_heat_j - found.absorbed_j)[ok])

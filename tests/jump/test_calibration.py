@@ -15,8 +15,8 @@ from pareto_monoped.jump.calibration import (
 from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 
 
-def test_five_ship_and_the_default_is_the_well_posed_one():
-    assert calibration_names() == ("reference", "elastic", "ideal", "paper", "stand")
+def test_four_ship_and_the_default_is_the_well_posed_one():
+    assert calibration_names() == ("reference", "ideal", "paper", "stand")
     assert load_calibration().name == "reference"
     assert isinstance(load_calibration().gate, FadeGate)
 
@@ -39,24 +39,33 @@ def test_paper_is_literal():
     assert paper.joints.hip_stop is paper.joints.knee_stop is None
 
 
-def test_ideal_is_reference_without_losses():
+def test_ideal_is_reference_without_losses_and_with_rigid_drives():
     reference, ideal = load_calibration("reference"), load_calibration("ideal")
+    without = {
+        "joints": {"friction_share": 0.0, "motor_damping_share_s_per_rad": 0.0},
+        "drive": {
+            "mesh_losses": False, "chain_efficiency": 1.0, "winding_rise_k": 0.0,
+            "elastic": False, "drive_damping_ratio": 0.0,
+        },
+        "simulation": {"timestep_s": 0.001},
+    }  # fmt: skip
     assert ideal.joints.damping_n_m_s_per_rad == ideal.joints.friction_n_m == 0.0
-    assert not ideal.drive.mesh_losses
-    assert ideal.drive.chain_efficiency == 1.0
+    same = {table: replace(getattr(reference, table), **values) for table, values in without.items()}
+    assert replace(reference, name="ideal", version=4, description=ideal.description, **same) == ideal
+
+
+def test_the_default_is_elastic_and_the_version_before_rigid():
+    """Version 4 differs from version 3 in what a bench shows besides, and in the step that stiff drives need."""
+    now, before = load_calibration("reference"), load_calibration("reference-3")
+    assert (now.label, before.label) == ("reference-4", "reference-3")
+    assert (now.drive.elastic, now.drive.battery, now.simulation.engine) == (True, "bus", "compiled")
+    assert (before.drive.elastic, before.drive.battery, before.simulation.engine) == (False, "each_motor", "mujoco")
+    assert now.joints.stop_law == "hunt_crossley" != before.joints.stop_law
     same = replace(
-        ideal,
-        name=reference.name,
-        version=reference.version,
-        description=reference.description,
-        joints=replace(
-            ideal.joints,
-            damping_n_m_s_per_rad=reference.joints.damping_n_m_s_per_rad,
-            friction_n_m=reference.joints.friction_n_m,
-        ),
-        drive=reference.drive,
-    )
-    assert same == reference
+        now, version=3, description=before.description, joints=before.joints, drive=before.drive,
+        simulation=replace(now.simulation, engine="mujoco", timestep_s=0.001),
+    )  # fmt: skip
+    assert same == before
 
 
 def test_stand_is_reference_on_its_rails_and_any_calibration_goes_there():
@@ -94,17 +103,17 @@ def _text(name="reference"):
 
 def test_a_users_file_is_read_by_its_path(tmp_path):
     path = tmp_path / "mine.toml"
-    path.write_text(_text().replace('name = "reference"', 'name = "mine"').replace("version = 3", "version = 7"))
+    path.write_text(_text().replace('name = "reference"', 'name = "mine"').replace("version = 4", "version = 7"))
     assert load_calibration(str(path)).label == "mine-7"
 
 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("timestep_s = 0.001", "timestep_s = -0.001", "simulation.timestep_s = -0.001"),
-        ("timestep_s = 0.001", "timestep_s = nan", "simulation.timestep_s = nan"),
-        ("timestep_s = 0.001", "timestep_s = 1e-9", "must be at least 3e-06, a millionth of time_limit_s"),
-        ("timestep_s = 0.001", "timestep_s = 1e-320", "must be a whole multiple of timestep_s"),
+        ("timestep_s = 0.0002", "timestep_s = -0.001", "simulation.timestep_s = -0.001"),
+        ("timestep_s = 0.0002", "timestep_s = nan", "simulation.timestep_s = nan"),
+        ("timestep_s = 0.0002", "timestep_s = 1e-9", "must be at least 3e-06, a millionth of time_limit_s"),
+        ("timestep_s = 0.0002", "timestep_s = 1e-320", "must be a whole multiple of timestep_s"),
         ('integrator = "Euler"', 'integrator = "RK4"', "RK4 needs 'state'"),
         ("[controller]", "[controller]\nrest_lenght_m = 9.0", "rest_lenght_m"),
         ('integrator = "Euler"', 'integrator = "Leapfrog"', "simulation.integrator = 'Leapfrog'"),
@@ -148,15 +157,18 @@ def test_an_earlier_version_is_loaded_by_its_label_and_has_its_own_hash(label):
     """The values are those that its version stored with its studies, without what came later."""
     values = calibration_values(load_calibration(label))
     assert f"{values['name']}-{values['version']}" == label
-    assert "efficiency" not in values["drive"]
-    if values["version"] == 1:
+    assert ("efficiency" in values["drive"]) == (label in ("reference-3", "ideal-3", "stand-1"))
+    assert not {"battery", "elastic", "winding_rise_k", "backlash_rad", "drive_damping_ratio"} & set(values["drive"])
+    assert not {"stop_law", "friction_share", "motor_damping_share_s_per_rad"} & set(values["joints"])
+    assert "engine" not in values["simulation"]
+    if values["version"] == 1 and label != "stand-1":
         assert not {"rotors", "stops"} & set(values["joints"])
         assert not {"control_period_s", "delay_s", "positions_read"} & set(values["simulation"])
 
 
 @pytest.mark.parametrize("name", ["reference", "ideal"])
 def test_version_3_reads_the_whole_gearbox_and_is_version_2_otherwise(name):
-    now, before = load_calibration(name), load_calibration(f"{name}-2")
+    now, before = load_calibration(f"{name}-3"), load_calibration(f"{name}-2")
     assert (now.drive.efficiency, before.drive.efficiency) == ("total", "mesh")
     assert replace(now, version=2, drive=replace(now.drive, efficiency="mesh")) == before
 

@@ -50,7 +50,7 @@ def test_a_callback_of_the_user_comes_back():
     try:
         mujoco.set_mjcb_control(own)
         designs = random_designs(3, seed=2)
-        evaluate_robots(plausible_robots(designs), designs[:, 4:], load_calibration())
+        evaluate_robots(plausible_robots(designs), designs[:, 4:], load_calibration().by("mujoco"))
         seen.clear()
         swing(0)
         assert len(seen) >= 50
@@ -71,9 +71,11 @@ def test_calibrations_on_several_threads_do_not_meet():
     designs = random_designs(30, seed=4)
     robots = plausible_robots(designs)
 
-    reference, paper = load_calibration(), load_calibration("paper")
+    reference, paper = load_calibration("reference-3"), load_calibration("paper")
     calibrations = {
-        "reference": reference,
+        "reference": load_calibration(),
+        "by MuJoCo": load_calibration().by("mujoco"),
+        "rigid": reference,
         "paper": paper,
         "by Runge-Kutta": replace(
             reference, simulation=replace(reference.simulation, integrator="RK4", positions_read="state")
@@ -113,7 +115,7 @@ def test_jumps_that_the_controller_is_kept_from_end_in_an_error_and_not_never(mo
     designs = random_designs(3, seed=2)
     monkeypatch.setattr(callback, "controlled", nullcontext)
     with pytest.raises(SimulationError, match="mjcb_control"):
-        evaluate_robots(plausible_robots(designs), designs[:, 4:], load_calibration())
+        evaluate_robots(plausible_robots(designs), designs[:, 4:], load_calibration().by("mujoco"))
 
 
 def test_a_mujoco_without_its_library_is_said(monkeypatch, tmp_path):

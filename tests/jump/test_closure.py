@@ -27,18 +27,20 @@ def jumping(calibration):
     return RANDOM[Evaluator(MAP, calibration)(RANDOM).ok]
 
 
-@pytest.mark.parametrize("name", ["reference", "ideal", "paper", "reference-1"])
-def test_every_balance_is_that_of_the_jump_alone(name):
+@pytest.mark.parametrize(
+    ("name", "most"), [("reference", 8), ("reference-3", 30), ("ideal", 30), ("paper", 30), ("reference-1", 30)]
+)
+def test_every_balance_is_that_of_the_jump_alone(name, most):
     calibration = load_calibration(name)
-    designs = jumping(calibration)
-    assert len(designs) >= 20
+    designs = jumping(calibration)[:most]  # five times the steps where drives are elastic
+    assert len(designs) >= min(most, 20)
     errors = balanced(robot_arrays(designs, MAP, calibration.mass), columns(designs, CONTROL), calibration).error
     np.testing.assert_allclose(errors, one_by_one(designs, calibration), rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize(("integrator", "read"), [("implicitfast", "half_step_back"), ("RK4", "state")])
 def test_so_it_is_with_other_integrators(integrator, read):
-    calibration = load_calibration()
+    calibration = load_calibration("reference-3")
     simulation = replace(calibration.simulation, integrator=integrator, positions_read=read)
     calibration = replace(calibration, simulation=simulation)
     designs = jumping(calibration)[:5]

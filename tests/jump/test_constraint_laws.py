@@ -15,7 +15,7 @@ from pareto_monoped.jump.end_stops import end_stops
 from pareto_monoped.jump.single import constraint_forces
 from pareto_monoped.robot.population import robot_arrays
 
-REFERENCE = load_calibration("reference")
+REFERENCE = load_calibration("reference-3")
 CONTACT = REFERENCE.contact
 
 

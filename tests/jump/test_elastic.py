@@ -21,7 +21,7 @@ from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.robot.population import robot_arrays
 
 MAP = map_for("VT8020")
-ELASTIC = load_calibration("elastic").by("mujoco")
+ELASTIC = load_calibration("reference").by("mujoco")
 CASES = complete(np.array([case.design.as_array() for case in PAPER_CASES.values()]))
 RANDOM = complete(np.random.default_rng(3).uniform(LOWER, UPPER, (40, len(LOWER))))
 
@@ -135,7 +135,7 @@ def test_the_energy_balance_closes(play_rad):
 
 
 def test_it_is_as_well_conditioned_as_the_rigid_drive():
-    found = audit(RANDOM[:12], MAP, load_calibration("elastic"), workers=2)
+    found = audit(RANDOM[:12], MAP, load_calibration("reference"), workers=2)
     assert found.well_conditioned.all()
     assert np.percentile(found.half_step_height_m, 90) < 2e-4
     assert np.percentile(found.half_step_energy, 90) < 5e-4
@@ -204,9 +204,8 @@ def test_a_step_that_the_drives_cannot_follow_is_refused_and_makes_no_height():
 
 def test_the_bus_sums_both_motors_before_it_cuts_off():
     """From the trace of a jump with rigid drives, whose speeds are the motors', and with warm copper (IEC 60028)."""
-    calibration = replace(
-        load_calibration(), drive=replace(load_calibration().drive, battery="bus", winding_rise_k=40.0)
-    )
+    rigid = load_calibration("reference-3")
+    calibration = replace(rigid, drive=replace(rigid.drive, battery="bus", winding_rise_k=40.0))
     warm_ohm = MAP.motor.terminal_resistance_ohm * (1.0 + 0.00393 * 40.0)
     for design in CASES:
         robots = robot_arrays(design, MAP)
@@ -220,16 +219,3 @@ def test_the_bus_sums_both_motors_before_it_cuts_off():
         assert found == pytest.approx(1e-3 * np.maximum(power, 0.0).sum(), rel=1e-9)
         apart = replace(calibration, drive=replace(calibration.drive, battery="each_motor"))
         assert Evaluator(MAP, apart)(design).electrical_energy_j[0] > 1.005 * found
-
-
-def test_earlier_studies_keep_the_hash_of_their_calibration():
-    """What a calibration has by default is left out of its stored values."""
-    from pareto_monoped.jump.calibration import calibration_of, calibration_values
-
-    values = calibration_values(load_calibration("reference"))
-    assert not {"battery", "elastic", "winding_rise_k", "backlash_rad", "drive_damping_ratio"} & set(values["drive"])
-    assert not {"stop_law", "friction_share", "motor_damping_share_s_per_rad"} & set(values["joints"])
-    assert "engine" not in values["simulation"]
-    for name in ("elastic", "reference"):
-        known = load_calibration(name)
-        assert calibration_of(calibration_values(known), source="again") == known

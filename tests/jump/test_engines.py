@@ -22,7 +22,7 @@ from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.uncertainty.samples import sobol_samples, variations
 from pareto_monoped.uncertainty.settings import load_uncertainty
 
-ELASTIC = load_calibration("elastic")
+ELASTIC = load_calibration("reference")
 _RIGID = replace(ELASTIC, drive=replace(ELASTIC.drive, elastic=False))
 CALIBRATIONS = {
     "elastic": ELASTIC,

@@ -25,7 +25,7 @@ def test_kept_steps_are_few_and_even_and_hold_start_lift_off_and_apex(before, af
     assert len(set(gaps[lift_off:-1].tolist())) <= 1
 
 
-@pytest.mark.parametrize("name", ["reference", "stand", "paper"])
+@pytest.mark.parametrize("name", ["reference", "reference-3", "stand", "stand-1", "paper"])
 def test_frames_are_those_of_the_whole_trace(name):
     """Bit by bit, but the floor's force, which follows from the momentum here and from MuJoCo's constraints there."""
     calibration, maps = load_calibration(name), map_for("VT8020")

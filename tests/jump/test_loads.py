@@ -13,7 +13,8 @@ from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.single import constraint_forces, moments
 from pareto_monoped.robot.population import robot_arrays
 
-REFERENCE = load_calibration("reference")
+REFERENCE = load_calibration("reference-3")
+"""With rigid drives and MuJoCo's stops; loads of elastic ones are those of ``planar.py`` and ``test_elastic``."""
 SMOOTH = replace(REFERENCE, joints=replace(REFERENCE.joints, friction_n_m=0.0))
 STEP = REFERENCE.simulation.timestep_s
 

@@ -22,10 +22,10 @@ def _compiled(designs, calibration, i=0):
     return mujoco.MjModel.from_xml_string(mjcf(plausible_robots(designs), calibration, i))
 
 
-@pytest.mark.parametrize("name", ["reference", "paper", "ideal"])
+@pytest.mark.parametrize("name", ["reference", "reference-3", "paper", "ideal", "stand"])
 def test_batch_simulates_exactly_the_exported_model(designs, name):
     calibration, robots = load_calibration(name), plausible_robots(designs)
-    population = prepare(robots, designs[:, 4:], start_pose(robots, calibration), calibration)
+    population = prepare(robots, designs[:, 4:], start_pose(robots, calibration), calibration.by("mujoco"))
     compared = 0
     for i in range(len(designs)):
         exported, simulated = _compiled(designs, calibration, i), population.batch.get_model(i)
@@ -43,8 +43,10 @@ def test_batch_simulates_exactly_the_exported_model(designs, name):
     assert compared > 100 * len(designs)
 
 
-def test_names_others_rely_on(designs):
-    model = _compiled(designs, load_calibration())
+@pytest.mark.parametrize(("calibration", "turned"), [("reference", "{}_motor"), ("reference-3", "{}")])
+def test_names_others_rely_on(designs, calibration, turned):
+    """A motor turns its joint, or its own end of an elastic drive."""
+    model = _compiled(designs, load_calibration(calibration))
     for body in ("base", "thigh", "shank"):
         assert model.body(body).id > 0
     for joint in ("slide_x", "slide_z", "hip", "knee"):
@@ -55,7 +57,7 @@ def test_names_others_rely_on(designs):
     robots = plausible_robots(designs)
     for j, name in enumerate(("hip", "knee")):
         motor = model.actuator(name)
-        assert motor.trnid[0] == model.joint(name).id
+        assert motor.trnid[0] == model.joint(turned.format(name)).id
         assert motor.gear[0] == 1.0
         peak = robots.peak_torque_n_m[0, j]
         np.testing.assert_array_equal(motor.ctrlrange, [-peak, peak])
@@ -79,7 +81,7 @@ def test_vertical_guide_has_no_slide_in_x(designs):
 
 def test_masses_and_armature_arrive(designs):
     robots = plausible_robots(designs)
-    model = _compiled(designs, load_calibration())
+    model = _compiled(designs, load_calibration("reference-3"))
     np.testing.assert_array_equal(model.body_mass[1:], robots.body_mass_kg[0])
     # The knee's turning parts are a tendon, whose own inertia leaves the thigh (tests/jump/test_rotors.py).
     np.testing.assert_array_equal(model.dof_armature[-2:], [robots.armature_kg_m2[0, 0], 0.0])
@@ -108,7 +110,7 @@ def test_foot_pushes_like_the_documented_spring(designs, share):
     assert force[kind][0] == pytest.approx(spring, rel=0.01)
 
 
-@pytest.mark.parametrize("name", ["reference", "reference-1"])
+@pytest.mark.parametrize("name", ["reference-3", "reference-1"])
 @pytest.mark.parametrize("joint", ["hip", "knee"])
 def test_end_stops_push_like_the_documented_bumper(designs, joint, name):
     calibration = load_calibration(name)
@@ -140,7 +142,7 @@ def test_a_joint_feels_its_motors_damping_times_the_ratio_squared(designs):
 
 
 def test_numbers_of_the_calibration_arrive(designs):
-    start = load_calibration()
+    start = load_calibration("reference-3")
     calibration = replace(
         start,
         joints=replace(start.joints, friction_n_m=0.7),

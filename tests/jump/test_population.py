@@ -17,8 +17,8 @@ from tests.jump.robots import plausible_robots, random_designs
 
 @pytest.mark.parametrize("count", [40, pytest.param(100, marks=pytest.mark.long)])
 def test_plain_mj_step_on_the_exported_model_agrees(count):
-    """To 1e-9 on all random designs, as `reference` hardly amplifies rounding."""
-    calibration, designs = load_calibration(), random_designs(count, seed=7)
+    """To 1e-9 on all random designs, as `reference-3` hardly amplifies rounding."""
+    calibration, designs = load_calibration("reference-3"), random_designs(count, seed=7)
     robots = plausible_robots(designs)
     found = evaluate_robots(robots, designs[:, 4:], calibration)
     for i, design in enumerate(designs):
@@ -78,7 +78,7 @@ def test_weight_limits_and_pose_of_the_later_readings():
 
 
 def test_first_records_hold_what_robot_and_calibration_say():
-    start, designs = load_calibration(), random_designs(2, seed=1)
+    start, designs = load_calibration("reference-3"), random_designs(2, seed=1)
     calibration = replace(
         start,
         drive=replace(start.drive, chain_efficiency=0.9, peak_torque_scale=1.25, loss_speed_rad_per_s=0.7),
@@ -141,14 +141,12 @@ def test_first_records_hold_what_robot_and_calibration_say():
     assert (paper["lags"][0], paper["fade_length_m"][0], paper["latch"][0], paper["voltage_limit"][0]) == (1, 0, 0, 0)
 
 
-@pytest.fixture(scope="module")
-def many():
-    designs = random_designs(60, seed=3)
-    return (
-        designs,
-        plausible_robots(designs),
-        evaluate_robots(plausible_robots(designs), designs[:, 4:], load_calibration()),
-    )
+@pytest.fixture(scope="module", params=["reference", "reference-3"])
+def many(request):
+    """By either engine."""
+    designs, calibration = random_designs(60, seed=3), load_calibration(request.param)
+    robots = plausible_robots(designs)
+    return designs, robots, calibration, evaluate_robots(robots, designs[:, 4:], calibration)
 
 
 def same_rows(part, whole, rows):
@@ -158,21 +156,21 @@ def same_rows(part, whole, rows):
 
 @pytest.mark.parametrize("size", [1, 2, 7, 33])
 def test_bits_do_not_depend_on_the_batch(many, size):
-    designs, robots, whole = many
+    designs, robots, calibration, whole = many
     rows = np.random.default_rng(size).permutation(len(designs))[:size]
-    same_rows(evaluate_robots(take(robots, rows), designs[rows, 4:], load_calibration()), whole, rows)
+    same_rows(evaluate_robots(take(robots, rows), designs[rows, 4:], calibration), whole, rows)
 
 
 @pytest.mark.parametrize("workers", [2, 3])
 def test_bits_do_not_depend_on_workers(many, workers):
-    designs, robots, whole = many
-    same_rows(evaluate_robots(robots, designs[:, 4:], load_calibration(), workers), whole, np.arange(len(designs)))
+    designs, robots, calibration, whole = many
+    same_rows(evaluate_robots(robots, designs[:, 4:], calibration, workers), whole, np.arange(len(designs)))
 
 
 def test_inputs_are_not_changed(many):
-    designs, robots, _ = many
+    designs, robots, calibration, _ = many
     before, fresh = designs.copy(), plausible_robots(designs)
-    evaluate_robots(robots, designs[:, 4:], load_calibration())
+    evaluate_robots(robots, designs[:, 4:], calibration)
     np.testing.assert_array_equal(designs, before)
     np.testing.assert_array_equal(robots.body_mass_kg, fresh.body_mass_kg)
     np.testing.assert_array_equal(robots.efficiency, fresh.efficiency)
@@ -181,7 +179,7 @@ def test_inputs_are_not_changed(many):
 @pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "RK4"])
 def test_torque_is_held_during_a_step_whatever_the_integrator(integrator):
     """A Runge-Kutta step calls the callback four times; the oracle sets the torque once."""
-    calibration, designs = load_calibration(), random_designs(8, seed=12)
+    calibration, designs = load_calibration("reference-3"), random_designs(8, seed=12)
     reads = "state" if integrator == "RK4" else "half_step_back"
     simulation = replace(calibration.simulation, integrator=integrator, positions_read=reads)
     calibration = replace(calibration, simulation=simulation)

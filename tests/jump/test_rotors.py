@@ -24,7 +24,7 @@ from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.robot.build import build_robot
 from pareto_monoped.robot.population import robot_arrays
 
-_REFERENCE = load_calibration("reference")
+_REFERENCE = load_calibration("reference-3")
 ARMATURE = replace(_REFERENCE, joints=replace(_REFERENCE.joints, rotors="armature"))
 ABSOLUTE = replace(_REFERENCE, joints=replace(_REFERENCE.joints, rotors="absolute"))
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(32)

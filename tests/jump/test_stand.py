@@ -19,7 +19,7 @@ from tests.jump.test_loads import SMOOTH, loads_by_mujoco
 from tests.jump.test_variations import neutral
 
 MAP = map_for("VT8020")
-REFERENCE, STAND = load_calibration("reference"), load_calibration("stand")
+REFERENCE, STAND = load_calibration("reference-3"), load_calibration("stand-1")
 CASES = complete(np.array([case.design.as_array() for case in PAPER_CASES.values()]))
 RANDOM = complete(np.random.default_rng(5).uniform(LOWER, UPPER, (20, len(LOWER))))
 ALL = np.vstack((CASES, RANDOM))

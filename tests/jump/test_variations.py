@@ -13,13 +13,13 @@ from pareto_monoped.jump.variations import Variations
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import robot_arrays
 
-CALIBRATION = load_calibration("reference")
 DESIGNS = np.array([PAPER_CASES[name].design.as_array() for name in ("C", "A")])
 
 
-@pytest.fixture(scope="module")
-def evaluator():
-    return Evaluator(map_for("VT8020"), CALIBRATION)
+@pytest.fixture(scope="module", params=["reference", "reference-3"])
+def evaluator(request):
+    """With elastic drives and the compiled engine, and with rigid ones by MuJoCo."""
+    return Evaluator(map_for("VT8020"), load_calibration(request.param))
 
 
 def neutral(n=2, **changes):
@@ -55,36 +55,57 @@ def test_the_result_does_not_depend_on_batch_or_workers(evaluator):
     n = 12
     varied = neutral(n, masses=generator.uniform(0.95, 1.05, (n, 3)), delays_s=0.001 * generator.integers(0, 4, n))
     designs = np.repeat(DESIGNS[:1], n, axis=0)
-    together = Evaluator(evaluator.actuator_map, CALIBRATION, workers=2)(designs, variations=varied)
+    together = Evaluator(evaluator.actuator_map, evaluator.calibration, workers=2)(designs, variations=varied)
     alone = evaluator(designs[7:8], variations=neutral(1, masses=varied.masses[7:8], delays_s=varied.delays_s[7:8]))
     for name in MEASURE_NAMES:
         np.testing.assert_array_equal(getattr(together, name)[7:8], getattr(alone, name))
 
 
 def as_calibrated(evaluator, **tables):
-    """The jumps under a calibration with other numbers."""
-    changed = replace(CALIBRATION, **{name: replace(getattr(CALIBRATION, name), **new) for name, new in tables.items()})
-    return Evaluator(evaluator.actuator_map, changed)(DESIGNS)
+    """The jumps under a calibration with other numbers, some of them functions of those that it has."""
+    calibration = evaluator.calibration
+    changed = {}
+    for table, numbers in tables.items():
+        known = getattr(calibration, table)
+        new = {name: value(getattr(known, name)) if callable(value) else value for name, value in numbers.items()}
+        changed[table] = replace(known, **new)
+    return Evaluator(evaluator.actuator_map, replace(calibration, **changed))(DESIGNS)
+
+
+def times(factor):
+    return lambda value: factor * value
 
 
 @pytest.mark.parametrize(
     ("change", "tables", "rtol"),
     [
-        ({"friction": np.full(2, 1.5)}, {"joints": {"friction_n_m": 1.5 * CALIBRATION.joints.friction_n_m}}, 1e-9),
+        (
+            {"friction": np.full(2, 1.5)},
+            {"joints": dict.fromkeys(("friction_n_m", "friction_share"), times(1.5))},
+            1e-9,
+        ),
         (
             {"damping": np.full(2, 0.5)},
-            {"joints": {"damping_n_m_s_per_rad": 0.5 * CALIBRATION.joints.damping_n_m_s_per_rad}},
+            {"joints": dict.fromkeys(("damping_n_m_s_per_rad", "motor_damping_share_s_per_rad"), times(0.5))},
             1e-9,
         ),
         (
             {"foot_stiffness": np.full(2, 1.25)},
-            {"contact": {"stiffness_n_per_m": 1.25 * CALIBRATION.contact.stiffness_n_per_m}},
+            {"contact": {"stiffness_n_per_m": times(1.25)}},
             # A varied robot starts in the pose of the nominal foot, which is compressed by some 0.05 mm more.
             1e-4,
         ),
         ({"delays_s": np.full(2, 0.003)}, {"simulation": {"delay_s": 0.003}}, 1e-9),
         ({"delays_s": np.full(2, 0.0014)}, {"simulation": {"delay_s": 0.001}}, 1e-9),
-        ({"peak_torques": np.full((2, 2), 0.9)}, {"drive": {"peak_torque_scale": 0.9}}, 1e-9),
+        (
+            {"peak_torques": np.full((2, 2), 0.9)},
+            # Friction that is a share of the peak torque is one of the torque as built.
+            {
+                "drive": {"peak_torque_scale": 0.9},
+                "joints": dict.fromkeys(("friction_share", "motor_damping_share_s_per_rad"), times(0.9)),
+            },
+            1e-9,
+        ),
     ],
     ids=["friction", "damping", "foot", "delay", "part of a period", "torque"],
 )
@@ -99,7 +120,11 @@ def test_what_a_calibration_can_say_is_as_if_it_said_so(evaluator, change, table
     ("change", "tables"),
     [
         ({"chain_loss": np.full(2, 2.5)}, {"drive": {"chain_efficiency": 1.0 - 2.5 * 0.02}}),
-        ({"winding_resistance": np.full(2, 1.0 + 0.00393 * 30.0)}, {"drive": {"winding_rise_k": 30.0}}),
+        (
+            {"winding_resistance": np.full(2, 1.1)},
+            # 1 + 0.00393 (T - 20) times 1.1, at the calibration's own temperature T
+            {"drive": {"winding_rise_k": lambda rise: (1.1 * (1.0 + 0.00393 * rise) - 1.0) / 0.00393}},
+        ),
         ({"gear_loss": np.zeros(2)}, {"drive": {"mesh_losses": False}}),
     ],
     ids=["chain", "winding", "gears without losses"],
@@ -134,13 +159,13 @@ def test_a_heavier_rotor_is_a_robot_with_that_rotor(evaluator):
         rotor_excess_kg_m2=robots.rotor_excess_kg_m2 + more * rotor[:, 1],
     )
     varied = evaluator(DESIGNS, variations=neutral(rotor_inertia=np.full(2, 1.2)))
-    expected = evaluate_robots(heavier, complete_control(DESIGNS[:, 4:7]), CALIBRATION)
+    expected = evaluate_robots(heavier, complete_control(DESIGNS[:, 4:7]), evaluator.calibration)
     np.testing.assert_allclose(varied.height_m, expected.height_m, rtol=1e-9)
     assert (varied.height_m < evaluator(DESIGNS).height_m).all()
 
 
 def test_less_rebound_takes_more_of_the_energy_at_the_stop():
-    elastic = Evaluator(map_for("VT8020"), load_calibration("elastic"))
+    elastic = Evaluator(map_for("VT8020"), load_calibration("reference"))
     dull, plain = elastic(DESIGNS, variations=neutral(rebound=np.full(2, 0.5))), elastic(DESIGNS)
     lively = elastic(DESIGNS, variations=neutral(rebound=np.full(2, 1.9)))
     assert (dull.stop_energy_j != plain.stop_energy_j).all()
@@ -158,7 +183,7 @@ def test_gains_and_lengths_are_those_of_another_design_with_the_same_masses(eval
         DESIGNS,
         variations=neutral(gains=np.tile([1.05, 0.95, 1.02], (2, 1)), link_lengths_m=np.tile([5e-4, -3e-4], (2, 1))),
     )
-    same(varied, evaluate_robots(longer, control, CALIBRATION))
+    same(varied, evaluate_robots(longer, control, evaluator.calibration))
 
 
 def test_a_lower_voltage_is_a_lower_no_load_speed(evaluator):
@@ -166,7 +191,7 @@ def test_a_lower_voltage_is_a_lower_no_load_speed(evaluator):
     slower = replace(robots, no_load_speed_rad_per_s=0.15 * robots.no_load_speed_rad_per_s)
     varied = evaluator(DESIGNS, variations=neutral(no_load_speeds=np.full(2, 0.15)))
     assert (varied.energy_j != evaluator(DESIGNS).energy_j).any()
-    same(varied, evaluate_robots(slower, complete_control(DESIGNS[:, 4:7]), CALIBRATION))
+    same(varied, evaluate_robots(slower, complete_control(DESIGNS[:, 4:7]), evaluator.calibration))
 
 
 def test_the_controller_does_not_know_the_true_mass(evaluator):
@@ -175,16 +200,15 @@ def test_the_controller_does_not_know_the_true_mass(evaluator):
     heavier = replace(
         robots, body_mass_kg=1.05 * robots.body_mass_kg, body_inertia_kg_m2=1.05 * robots.body_inertia_kg_m2
     )
-    knowing = evaluate_robots(heavier, complete_control(DESIGNS[:, 4:7]), CALIBRATION)
+    knowing = evaluate_robots(heavier, complete_control(DESIGNS[:, 4:7]), evaluator.calibration)
     varied = evaluator(DESIGNS, variations=neutral(masses=np.full((2, 3), 1.05)))
     np.testing.assert_allclose(varied.mass_kg, knowing.mass_kg)
     # Its m g is too small, so that it pushes less. With a feed-forward of 1 / 1.05 the other one does the same.
-    less = replace(
-        CALIBRATION,
-        controller=replace(
-            CALIBRATION.controller, gravity_feed_forward=CALIBRATION.controller.gravity_feed_forward / 1.05
-        ),
+    controller = replace(
+        evaluator.calibration.controller,
+        gravity_feed_forward=evaluator.calibration.controller.gravity_feed_forward / 1.05,
     )
+    less = replace(evaluator.calibration, controller=controller)
     unknowing = evaluate_robots(heavier, complete_control(DESIGNS[:, 4:7]), less)
     np.testing.assert_allclose(varied.height_m, unknowing.height_m, rtol=1e-9)
     assert (np.abs(varied.height_m - knowing.height_m) > 1e-6).any()

@@ -65,7 +65,7 @@ def made_meta(study):
     return StudyMeta(
         study=study.as_dict(),
         motor=study.motor,
-        calibration="reference-3",
+        calibration="reference-4",
         seed=study.seed,
         contents=CONTENTS,
         files={"motor": None, "calibration": None},

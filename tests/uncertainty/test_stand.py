@@ -48,7 +48,7 @@ def test_without_a_stand_the_points_are_those_of_twenty_one_coordinates():
 
 
 def test_a_study_on_the_stand_stores_its_ranges_and_another_study_none():
-    for name, has in (("stand", True), ("stand-1", True), ("reference", False)):
+    for name, has in (("stand", True), ("stand-2", True), ("stand-1", True), ("reference", False)):
         study = Study.define(name="s", evaluations=40, calibration=name, objectives=["height_m.p05", "energy_j.p95"])
         stored = study.as_dict()["uncertainty"]
         assert ("rail_friction" in stored) is has

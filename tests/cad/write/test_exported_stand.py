@@ -10,13 +10,13 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.as_built import as_built
 from pareto_monoped.cad.write.mjcf import jump_record, mjcf_with_meshes
 from pareto_monoped.design import LOWER, PAPER_CASES, PAPER_CONTROL, UPPER, Design, complete
-from pareto_monoped.jump.calibration import load_calibration, on_stand
+from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.document import mjcf
 from pareto_monoped.robot.population import robot_arrays
 from tests.jump import planar
-from tests.jump.test_independent_simulator import LOADS, timed
+from tests.jump.test_independent_simulator import LOADS
 
-STANDS = {"rigid": on_stand(load_calibration()), "elastic": on_stand(timed(elastic={}))}
+STANDS = {"rigid": load_calibration("stand-1"), "elastic": load_calibration("stand")}
 RANDOM = complete(np.random.default_rng(21).uniform(LOWER, UPPER, (11, len(LOWER))))
 DESIGNS = [("VT8020", case.design) for case in PAPER_CASES.values()]
 DESIGNS += [("U12" if i > 6 else "VT8020", Design.from_array(values)) for i, values in enumerate(RANDOM)]

@@ -12,7 +12,7 @@ import pytest
 
 from pareto_monoped.cad.write.mjcf import jump_record, replay_script
 from pareto_monoped.design import Design
-from pareto_monoped.jump.calibration import load_calibration, on_stand
+from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.document import mjcf
 from pareto_monoped.robot.population import robot_arrays
 
@@ -20,12 +20,10 @@ REFERENCE, FIRST = load_calibration("reference"), load_calibration("reference-1"
 MACHINE = replace(
     REFERENCE,
     drive=replace(REFERENCE.drive, regeneration_share=0.5, standby_power_w=8.0),
-    simulation=replace(REFERENCE.simulation, timestep_s=5e-4, control_period_s=1e-3, delay_s=2e-3),
+    simulation=replace(REFERENCE.simulation, timestep_s=1e-4, control_period_s=1e-3, delay_s=2e-3),
 )
 CALIBRATIONS = {"reference": REFERENCE, "reference-1": FIRST, "paper": load_calibration("paper"), "machine": MACHINE}
-CALIBRATIONS["stand"] = load_calibration("stand")
-CALIBRATIONS["elastic"] = load_calibration("elastic")
-CALIBRATIONS["elastic stand"] = on_stand(load_calibration("elastic"))
+CALIBRATIONS |= {name: load_calibration(name) for name in ("stand", "reference-3", "stand-1")}
 DESIGNS = {
     "low and light": (0.3, 0.3, 4.05, 4.05, 30.0, 5.0, 10.0),
     "long thigh": (0.5, 0.31, 5.0, 6.0, 20.0, 2.0, 30.0),
