@@ -61,7 +61,8 @@ def test_rows_of_a_study_jump_with_the_motor_that_they_name(u8):
         np.testing.assert_array_equal(jumps["height_m"], front["height_m"])
     dropped = pm.simulate(front.drop(columns="motor"))
     assert (dropped["height_m"] != front["height_m"]).all()
-    assert pm.trace(front.iloc[0], motor="U8")["base_z_m"].max() == front["height_m"][0]
+    highest = pm.trace(front.iloc[0], motor="U8")["base_z_m"].max()  # by MuJoCo
+    assert highest == pytest.approx(front["height_m"][0], rel=1e-9)
     assert pm.build_robot(front.iloc[0], motor="U8").mass_kg == pytest.approx(front["mass_kg"][0], rel=1e-9)
 
 

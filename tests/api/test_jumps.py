@@ -46,13 +46,15 @@ def test_one_design_is_one_row(form, jumps):
     ids=str,
 )
 def test_a_jump_is_that_of_the_command_line(named, capsys):
+    """To the last bit by one engine; the command's single jump is MuJoCo's, and differs by rounding from compiled."""
     row = pm.simulate(C, **named).iloc[0]
     options = [word for name, value in named.items() for word in (f"--{name.replace('_', '-')}", value)]
     assert cli(["simulate", "--case", "C", "--json", *options]) == 0
     said = json.loads(capsys.readouterr().out)
     for entry in pm.MEASURES:
         value = row[entry.name]
-        assert said[entry.name] == (value if np.isfinite(value) else None), entry.name
+        same = value if named.get("calibration") == "paper" else pytest.approx(value, rel=1e-9, abs=1e-12)
+        assert said[entry.name] == (same if np.isfinite(value) else None), entry.name
 
 
 def test_motors_and_calibrations_may_be_objects_files_and_names(tmp_path, jumps):
@@ -75,7 +77,7 @@ def test_a_design_that_fails_is_a_row_with_its_status():
 
 def test_a_trace_ends_at_the_apex_of_the_jump(jumps):
     steps = pm.trace(C)
-    assert steps["base_z_m"].max() == jumps["height_m"].iloc[-1]
+    assert steps["base_z_m"].max() == pytest.approx(jumps["height_m"].iloc[-1], rel=1e-9)  # by the other engine
     assert steps["time_s"].iloc[-1] == pytest.approx(jumps["apex_s"].iloc[-1], abs=1e-12)
 
 

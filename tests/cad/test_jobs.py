@@ -68,7 +68,7 @@ def test_an_export_is_made_again_byte_for_byte(original, tmp_path, capsys):
     assert [name for name in before if before[name] != after[name]] == []
     record = json.loads(before["design.json"])
     assert record["motor"] == record["motor_data"]["name"] == "mine"
-    assert record["calibration"] == "soft-3"
+    assert record["calibration"] == "soft-4"
     assert record["pose"]["knee_rad"] == 1.25
 
 

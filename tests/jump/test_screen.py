@@ -49,7 +49,7 @@ def test_its_measures_are_those_of_single_jumps():
     calibration = load_calibration()
     base = known(DESIGNS, calibration)
     found = screened(DESIGNS, MAP, calibration, base, seed=3)
-    simulation = replace(calibration.simulation, timestep_s=2e-3, control_period_s=2e-3)
+    simulation = replace(calibration.simulation, timestep_s=4e-4, control_period_s=2e-3)
     coarse = replace(calibration, simulation=simulation)
     for i in np.flatnonzero(base.ok)[:6]:
         copy = perturbed(DESIGNS[i], 1, np.random.default_rng(3))

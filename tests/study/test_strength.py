@@ -31,7 +31,7 @@ EASY = """
 thigh_length_m = 0.35
 knee_ratio = {lower = 6.0, upper = 8.4}
 stiffness_n_per_m = {lower = 5.0, upper = 200.0}
-knee_release_rad = {lower = 0.0, upper = 0.3}
+knee_release_rad = {lower = 0.3, upper = 1.0}
 """
 OTHERS = ("nsga2", "sms_emoa", "optuna_nsga2", "random")
 ALGORITHMS = ("surrogate", "weighted_cmaes", *(pytest.param(name, marks=pytest.mark.long) for name in OTHERS))
