@@ -26,8 +26,8 @@ from pareto_monoped.strength.factors import TABLE, JointFactor, joint_factors, s
 from pareto_monoped.strength.joint import LOAD_NAMES, loads_of
 from pareto_monoped.study.run import run
 
-# A low jump, whose knee lets go before its stop and whose motors do not begin with their peak torque, which makes elastic
-# drives swing to nearly twice of it; and one that breaks something.
+# A low jump, whose knee lets go before its stop and whose motors do not begin with their peak torque, at which elastic
+# drives would swing to nearly twice of it; and one that breaks something.
 GENTLE = Design(
     thigh_length_m=0.374,
     shank_length_m=0.469,
