@@ -65,11 +65,12 @@ def test_joints_have_their_own_actuator_s_limits(urdf, robots, joint, name, pare
 
 
 @pytest.mark.parametrize("name", ["hip", "knee"])
-def test_joints_of_the_urdf_lose_what_those_of_the_mjcf_lose(exported, urdf, name):
+def test_joints_of_the_urdf_lose_what_motors_of_the_mjcf_lose(exported, urdf, name):
+    """The URDF's drives are rigid, so that its joints turn with their motors."""
     model = mujoco.MjModel.from_xml_path(str(exported.folder / "model" / "monoped.xml"))
     dynamics = urdf.find(f"joint[@name='{name}']/dynamics")
-    assert float(dynamics.get("damping")) == model.joint(name).damping[0] > 0.0
-    assert float(dynamics.get("friction")) == model.joint(name).frictionloss[0] > 0.0
+    assert float(dynamics.get("damping")) == model.joint(f"{name}_motor").damping[0] > 0.0
+    assert float(dynamics.get("friction")) == model.joint(f"{name}_motor").frictionloss[0] > 0.0
 
 
 def test_the_foot_has_a_frame_at_the_centre_of_its_sphere(urdf, robots):

@@ -33,8 +33,9 @@ def test_mjcf_makes_the_as_built_jump(exported, built, actuator_map, calibration
 
 def test_mjcf_has_names_meshes_and_colliders(exported):
     model = mujoco.MjModel.from_xml_path(str(exported.folder / "model" / "monoped.xml"))
-    assert [model.body(k).name for k in range(1, model.nbody)] == ["base", "thigh", "shank"]
-    assert [model.joint(k).name for k in range(model.njnt)] == ["slide_x", "slide_z", "hip", "knee"]
+    motors = ["knee_motor", "hip_motor"]
+    assert [model.body(k).name for k in range(1, model.nbody)] == ["base", "thigh", "shank", *motors]
+    assert [model.joint(k).name for k in range(model.njnt)] == ["slide_x", "slide_z", "hip", "knee", *motors]
     assert model.geom("foot").type[0] == mujoco.mjtGeom.mjGEOM_SPHERE
     visual = [k for k in range(model.ngeom) if model.geom(k).name.endswith("_visual")]
     collider = [k for k in range(model.ngeom) if model.geom(k).name.endswith("_collider")]
