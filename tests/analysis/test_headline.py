@@ -9,14 +9,16 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.analysis.choices import headline
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.jump.calibration import load_calibration
-from pareto_monoped.jump.single import simulate
+from pareto_monoped.jump.evaluate import Evaluator
+from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 
 
 @pytest.fixture(scope="module")
 def simulated():
     """Case C as the study below simulates it."""
-    return simulate(PAPER_CASES["C"].design, map_for("U8"), load_calibration("ideal")).measures
+    jump = Evaluator(map_for("U8"), load_calibration("ideal"))(PAPER_CASES["C"].design.as_array())
+    return {name: float(jump.of(name)[0]) for name in MEASURE_NAMES}
 
 
 def study(*front, motors=("U8",)):

@@ -30,7 +30,9 @@ def made(tmp_path_factory):
     """A study of 30 trials, and the sensitivity of the highest of its front."""
     db = tmp_path_factory.mktemp("sensitivity") / "s.db"
     file = {"name": "s", "evaluations": 30, "audit": False, "strength": True, "algorithm": {"name": "random"}}
-    run(study_from_dict(file | {"gear_list": True, "rules": "iso6336"}, source="test"), db, workers=1)
+    holding = {"knee_ratio": {"lower": 4.0, "upper": 6.0}, "knee_release_rad": {"lower": 0.3, "upper": 1.0}}
+    file |= {"gear_list": True, "rules": "iso6336", "variables": holding}
+    run(study_from_dict(file, source="test"), db, workers=1)
     trial = int(read_study(db).front()["trial"].iloc[-2])
     return db, trial, sensitivity(db, trial, RANGES, blocks=32, workers=1)
 

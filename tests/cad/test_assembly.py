@@ -14,7 +14,7 @@ def test_the_foot_is_where_mujoco_has_it(product, actuator_map, calibration, hip
     robots = robot_arrays(product.robot.design.as_array(), actuator_map)
     model = mujoco.MjModel.from_xml_string(mjcf(robots, calibration))
     data = mujoco.MjData(model)
-    data.qpos[-2:] = hip_rad, knee_rad
+    data.joint("hip").qpos[0], data.joint("knee").qpos[0] = hip_rad, knee_rad
     mujoco.mj_kinematics(model, data)
     expected = 1e3 * (data.site("foot").xpos - data.body("base").xpos)
     shank = body_frames(product.robot, Pose(hip_rad=hip_rad, knee_rad=knee_rad))["shank"]
