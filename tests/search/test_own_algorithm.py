@@ -12,7 +12,7 @@ from pareto_monoped.cli import _run as cli
 from pareto_monoped.errors import StudyError
 from pareto_monoped.search.algorithm import Proposal
 
-STUDY = pm.Study.define(name="own", evaluations=50, audit=False)
+STUDY = pm.Study.define(name="own", evaluations=50, audit=False, strength=False)
 
 
 class Climber:
