@@ -36,7 +36,7 @@ def command(folder, *words):
 def done(tmp_path_factory):
     """A campaign of two studies that can be run and two that cannot, and what it printed in a pipe."""
     folder = tmp_path_factory.mktemp("campaign")
-    written(folder, AXES, SMALL.replace("40", "20"))
+    written(folder, AXES, SMALL.replace("evaluations = 40", "evaluations = 20\nstrength = false"))
     return folder, command(folder, "--workers", "2", "--csv", "table.csv", "--report", "page.html")
 
 
