@@ -36,7 +36,7 @@ def mjcf(robots: RobotArrays, calibration: Calibration, index: int = 0, *, comme
 
     fields = {name: values[index] for name, values in model_fields(robots, calibration).items()}
     pose = start_pose(robots, calibration)
-    start = start_qpos(calibration, robots.start_height_m, pose)[index]
+    start = start_qpos(robots, calibration, pose)[index]
     # Springs in N/m need inverse masses that only MuJoCo's compiler computes, so compile a draft without them first.
     stops = constraints(robots, calibration.joints)
     draft = mujoco.MjModel.from_xml_string(_document(fields, start, calibration, stops, None, comment))

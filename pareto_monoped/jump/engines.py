@@ -97,7 +97,7 @@ def _planar(
     return PlanarPopulation(
         records=records,
         grounds=grounds,
-        start=start_qpos(calibration, robots.start_height_m, pose),
+        start=start_qpos(robots, calibration, pose),
         controls=4 if calibration.joints.stop_law == "hunt_crossley" else 2,
         threads=threads,
     )

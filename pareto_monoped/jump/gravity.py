@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pareto_monoped.design import GRAVITY_M_PER_S2, Floats
 from pareto_monoped.jump.calibration import Calibration, SpringContact
 from pareto_monoped.jump.end_stops import end_stops
-from pareto_monoped.jump.model import SHANK, THIGH, compression_m, slow_force_n, stand_mass_kg, start_pose
+from pareto_monoped.jump.model import SHANK, THIGH, compression_m, slow_force_n, stand_mass_kg, start_pose, wound_j
 from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import RobotArrays
 
@@ -75,10 +75,10 @@ def standing_height_m(robots: RobotArrays, calibration: Calibration) -> Floats:
 def least_energy_j(robots: RobotArrays, calibration: Calibration, height_m: Floats) -> Floats:
     """Return the energy below which no controller can bring each base to its height, shape (n,).
 
-    It is the least rise of potential energy from the start to any pose with the base there, less what the foot's spring
-    gives back from the start. A pose is reachable with the foot not below the floor and both joints between their
-    stops, whose bumpers may be pressed over their whole travel. It is 0 where a robot need not rise, and NaN for one
-    that cannot stand.
+    It is the least rise of potential energy from the start to any pose with the base there, less what the springs of
+    the foot and of elastic drives give back from the start. A pose is reachable with the foot not below the floor and
+    both joints between their stops, whose bumpers may be pressed over their whole travel. It is 0 where a robot need
+    not rise, and NaN for one that cannot stand.
     """
     weight_n, start_m = _start(robots, calibration)
     below = np.empty(len(robots))
@@ -115,7 +115,7 @@ def least_of_all_j(robots: RobotArrays, calibration: Calibration, heights_m: Flo
 
 
 def _start(robots: RobotArrays, calibration: Calibration) -> tuple[Floats, Floats]:
-    """Return weight, and z + s at the start with what the foot's spring holds counted as height, shape (n,) each."""
+    """Return weight, and z + s at the start with what its springs hold counted as height, shape (n,) each."""
     stand_kg = stand_mass_kg(robots, calibration)
     weight_n = (robots.body_mass_kg.sum(axis=1) + stand_kg) * GRAVITY_M_PER_S2
     pose, zero = start_pose(robots, calibration), np.zeros(len(robots))
@@ -124,7 +124,8 @@ def _start(robots: RobotArrays, calibration: Calibration) -> tuple[Floats, Float
         sunk = compression_m(contact, weight_n)
         spring_j = 0.5 * sunk * (_WEIGHTS @ slow_force_n(contact, 0.5 * sunk * (1.0 + _NODES[:, None])))
     position = np.stack([zero, robots.start_height_m, pose.hip_rad, pose.knee_rad], axis=1)
-    return weight_n, _height_m(_levers_m(robots, stand_kg), position) + spring_j / weight_n
+    held_j = spring_j + wound_j(robots, calibration, pose)
+    return weight_n, _height_m(_levers_m(robots, stand_kg), position) + held_j / weight_n
 
 
 def _least_below_m(robots: RobotArrays, calibration: Calibration, height_m: Floats) -> Floats:

@@ -301,8 +301,43 @@ def spring_fields(
     return result
 
 
-def start_qpos(calibration: Calibration, height_m: Floats, pose: StartPose) -> Floats:
-    """Joint positions at rest, in the order of ``coordinates``, shape (n, nv); the drives are not wound up."""
-    known = {"slide_x": np.zeros(len(height_m)), "slide_z": height_m}
-    known |= dict.fromkeys(("hip", "hip_motor"), pose.hip_rad) | dict.fromkeys(("knee", "knee_motor"), pose.knee_rad)
+def start_qpos(robots: RobotArrays, calibration: Calibration, pose: StartPose) -> Floats:
+    """Return joint positions at rest, in the order of ``coordinates``, shape (n, nv).
+
+    The springs of elastic drives are wound up by ``standing_torque_n_m``, so that a jump does not begin with a fall.
+    """
+    joint_rad = np.stack([pose.hip_rad, pose.knee_rad], axis=1)
+    known = {"slide_x": np.zeros(len(robots)), "slide_z": robots.start_height_m}
+    known |= dict(zip(JOINTS, joint_rad.T, strict=True))
+    if calibration.drive.elastic:
+        torque = standing_torque_n_m(robots, calibration, pose)
+        motor_rad = joint_rad + torque / robots.drive_stiffness_n_m_per_rad
+        motor_rad += np.copysign(0.5 * calibration.drive.backlash_rad, torque)
+        known |= {f"{joint}_motor": motor_rad[:, k] for k, joint in enumerate(JOINTS)}
     return np.stack([known[name] for name in coordinates(calibration)], axis=1)
+
+
+def standing_torque_n_m(robots: RobotArrays, calibration: Calibration, pose: StartPose) -> Floats:
+    """Return torques that hold robots in their start pose, shape (n, 2): the force on the foot goes up through the hip.
+
+    Each joint carries the moments about it of that force and of the links below it.
+    """
+    thigh_rad, shank_rad = pose.hip_rad, pose.hip_rad + pose.knee_rad
+    knee_m, foot_m = -robots.thigh_length_m * np.sin(thigh_rad), -robots.shank_length_m * np.sin(shank_rad)
+    links_n = GRAVITY_M_PER_S2 * robots.body_mass_kg[:, [THIGH - 1, SHANK - 1]]
+    centres_m = [
+        com[:, 0] * np.cos(angle) + com[:, 2] * np.sin(angle)
+        for com, angle in ((robots.body_com_m[:, THIGH - 1], thigh_rad), (robots.body_com_m[:, SHANK - 1], shank_rad))
+    ]
+    lifted_kg = robots.body_mass_kg.sum(axis=1) + stand_mass_kg(robots, calibration)
+    knee = GRAVITY_M_PER_S2 * lifted_kg * foot_m - links_n[:, 1] * centres_m[1]
+    hip = (GRAVITY_M_PER_S2 * lifted_kg - links_n[:, 1]) * knee_m + knee - links_n[:, 0] * centres_m[0]
+    return np.stack([hip, knee], axis=1)
+
+
+def wound_j(robots: RobotArrays, calibration: Calibration, pose: StartPose) -> Floats:
+    """Return the energy in the springs of elastic drives at the start, shape (n,)."""
+    if not calibration.drive.elastic:
+        return np.zeros(len(robots))
+    torque = standing_torque_n_m(robots, calibration, pose)
+    return np.asarray(0.5 * np.sum(np.square(torque) / robots.drive_stiffness_n_m_per_rad, axis=1))

@@ -114,7 +114,7 @@ def prepare(
         batch.expand("geom_solref")[:, model.FOOT_GEOM] = springs["geom_solref"]
     if "jnt_solref" in springs:
         batch.expand("jnt_solref")[:, model.joint_places(calibration)] = springs["jnt_solref"]
-    _component(batch, mujoco.mjtState.mjSTATE_QPOS)[:] = model.start_qpos(calibration, robots.start_height_m, pose)
+    _component(batch, mujoco.mjtState.mjSTATE_QPOS)[:] = model.start_qpos(robots, calibration, pose)
     records = _component(batch, mujoco.mjtState.mjSTATE_USERDATA).view(RECORD)[:, 0]
     records[:] = first_records(robots, control, calibration)
     if variations is not None:

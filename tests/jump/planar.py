@@ -328,8 +328,21 @@ def with_inverse_masses(m):
     return m._replace(inverse=np.array([inverse[n - 2, n - 2], inverse[n - 1, n - 1], foot]))
 
 
+def lifted(m, hip, knee):
+    """Potential energy with the foot on one spot."""
+    upper, lower = m.centres
+    thigh, shank = turned(hip, 0.0, -m.thigh)[1], turned(hip + knee, 0.0, -m.shank)[1]
+    first, second = turned(hip, *upper)[1], turned(hip + knee, *lower)[1]
+    base = -(thigh + shank)
+    heights = np.array([base, base + first, base + thigh + second])
+    return GRAVITY * (m.mass @ heights + m.stand * base)
+
+
 def standing(m):
-    """Coordinates at the start: the foot below the base, compressed by the weight, the knee bent forwards."""
+    """Coordinates at the start: the foot below the base, compressed by the weight, the knee bent forwards.
+
+    Elastic drives are wound by the torques that hold it, which are the slopes of its potential energy.
+    """
     low, high = 0.0, m.foot[2]
     for _ in range(60):
         depth = 0.5 * (low + high)
@@ -338,4 +351,12 @@ def standing(m):
     reach = m.start - m.radius + depth
     knee = np.arccos((reach**2 - m.thigh**2 - m.shank**2) / (2 * m.thigh * m.shank))
     hip = -np.arctan2(m.shank * np.sin(knee), m.thigh + m.shank * np.cos(knee))
-    return np.array([0.0, m.start, hip, knee] + ([hip, knee] if m.spring.any() else []))
+    q = np.array([0.0, m.start, hip, knee])
+    if not m.spring.any():
+        return q
+    d = 1e-6
+    slopes = np.array(
+        [lifted(m, hip + d, knee) - lifted(m, hip - d, knee), lifted(m, hip, knee + d) - lifted(m, hip, knee - d)]
+    )
+    torque = slopes / (2 * d)
+    return np.append(q, q[2:] + torque / m.spring + np.copysign(0.5 * m.play, torque))

@@ -71,8 +71,8 @@ def test_a_motor_swings_on_its_drive_as_stiffness_and_inertia_say():
         mujoco.mj_resetDataKeyframe(model, data, 0)
         data.qpos[1] += 1.0
         motor = model.joint(f"{joint}_motor").qposadr[0]
-        held = data.qpos[motor]
-        data.qpos[motor] += 1e-3
+        held = data.joint(joint).qpos[0]
+        data.qpos[motor] = held + 1e-3
         signs = []
         for _ in range(40_000):
             mujoco.mj_step(model, data)

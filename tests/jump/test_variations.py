@@ -99,11 +99,8 @@ def times(factor):
         ({"delays_s": np.full(2, 0.0014)}, {"simulation": {"delay_s": 0.001}}, 1e-9),
         (
             {"peak_torques": np.full((2, 2), 0.9)},
-            # Friction that is a share of the peak torque is one of the torque as built.
-            {
-                "drive": {"peak_torque_scale": 0.9},
-                "joints": dict.fromkeys(("friction_share", "motor_damping_share_s_per_rad"), times(0.9)),
-            },
+            # Friction stays: it is a share of the torque that motors of this kind are rated for.
+            {"drive": {"peak_torque_scale": 0.9}},
             1e-9,
         ),
     ],
