@@ -1,12 +1,10 @@
-"""The README as pages of the site, and links between the files of the repository.
+"""The README as the first page of the site, and links between the files of the repository.
 
-A line of a page that is nothing but a link to the README, such as ``[Five verbs](../README.md#five-verbs)``, becomes
-that section; ``[pareto_monoped](../README.md)`` becomes what stands before the first section. On a code host these
-lines are plain links. A link to a section of the README leads to the page that shows it.
+A line of a page that is nothing but a link to the README becomes the README without its title; on a code host it is a
+plain link. A link to the README leads to that page.
 """
 
 import re
-from functools import cache
 from pathlib import Path
 from posixpath import dirname, join, normpath, relpath
 from typing import Any
@@ -19,7 +17,7 @@ FOLDERS = {"examples": "docs/examples.md", "notebooks": "docs/notebooks.md"}
 """Folders that a page of the site shows; links to other folders become plain text."""
 LINK = re.compile(r"(?<!!)\[([^\]]*)\]\((?!\w+:|#)([^)#\s]*)(#[^)\s]*)?\)")
 IMAGE = re.compile(r'(!\[[^\]]*\]\(|<img src=")(?!\w+:)([^)"\s]+)')
-SECTION = re.compile(r"^\[[^\]]+\]\((?:\.\./)+README\.md(?:#([^)]*))?\)\n", re.M)
+WHOLE = re.compile(r"^\[[^\]]+\]\(\.\./README\.md\)\n", re.M)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
@@ -45,37 +43,15 @@ def _read(app: Sphinx, docname: str, content: list[str]) -> None:
     if source.suffix != ".md":
         return
     page = source.relative_to(ROOT).as_posix()
-    text = relinked(content[0], page, page)
-    if SECTION.search(content[0]):
+    text = content[0]
+    if WHOLE.search(text):
         app.env.note_dependency(str(ROOT / "README.md"))
-        text = SECTION.sub(lambda found: relinked(readme()[found[1] or ""], "README.md", page), content[0])
+        readme = (ROOT / "README.md").read_text(encoding="utf-8").partition("\n")[2]
+        before, after = WHOLE.split(text)
+        text = relinked(before, page, page) + relinked(readme, "README.md", page) + relinked(after, page, page)
+    else:
+        text = relinked(text, page, page)
     content[0] = text
-
-
-@cache
-def readme() -> dict[str, str]:
-    """Anchor -> section of the README, without its title and with its headings one level up; "" -> its beginning."""
-    start, *rest = re.split(r"^## ", (ROOT / "README.md").read_text(encoding="utf-8"), flags=re.M)
-    sections = {"": start.partition("\n")[2]}
-    for section in rest:
-        title, _, text = section.partition("\n")
-        sections[anchor(title)] = text.replace("\n### ", "\n## ")
-    return sections
-
-
-@cache
-def homes() -> dict[str, str]:
-    """Anchor of a section of the README -> the page that shows it."""
-    return {
-        found: page.relative_to(ROOT).as_posix()
-        for page in sorted((ROOT / "docs").glob("*.md"))
-        for found in SECTION.findall(page.read_text(encoding="utf-8"))
-    }
-
-
-def anchor(title: str) -> str:
-    """The anchor that code hosts give a heading."""
-    return re.sub(r"[^\w\- ]", "", title.strip().lower()).replace(" ", "-")
 
 
 def relinked(text: str, origin: str, page: str) -> str:
@@ -90,7 +66,7 @@ def relinked(text: str, origin: str, page: str) -> str:
     def link(found: re.Match[str]) -> str:
         words, target, part = found[1], normpath(join(dirname(origin), found[2])), found[3] or ""
         if target == "README.md":
-            target = homes().get(part.removeprefix("#"), HOME)
+            target = HOME
         elif (ROOT / target).is_dir():
             if target not in FOLDERS:
                 return words

@@ -138,20 +138,22 @@ _COMPETED = tuple(one.name for one in fields(Competitor) if one.name != "label")
 
 
 def headline(data: StudyData, chosen_trial: int) -> tuple[Competitor, ...]:
-    """Return the paper's design, published and simulated here, then the front's: as high, if any, and that chosen."""
+    """Return the paper's design, published and simulated, the front's of least energy that is as high, and that chosen.
+
+    The front may have none as high, and the chosen one may be behind it, see ``default_pick``.
+    """
     several = len(data.study.kits) > 1
     evaluations = Evaluator(data.case_kit, data.calibration)(CASE.design.as_array())
     simulated = Competitor(
         label=f"paper's Case {CASE.name}, simulated here" + (f" with {data.case_kit.label}" if several else ""),
         **{name: float(evaluations.of(name)[0]) for name in _COMPETED},
     )
-    front, objectives = data.front(), data.study.objectives
     chosen = []
     with contextlib.suppress(SelectionError):
         wanted = MinHeight(height_m=simulated.height_m)
-        chosen.append(("front: at least that height", pick(front, wanted, objectives).trial))
-    chosen.append(("front: exported", chosen_trial))
-    jumps = front.set_index("trial")
+        chosen.append(("front: at least that height", pick(data.front(), wanted, data.study.objectives).trial))
+    chosen.append(("exported", chosen_trial))
+    jumps = data.sound.set_index("trial")
     return (
         Competitor(label=f"paper's Case {CASE.name}, as published", height_m=CASE.height_m, energy_j=CASE.energy_j),
         simulated,

@@ -55,7 +55,7 @@ def pareto(
 
     # Before the search: minutes later would be too late to say so.
     require_extra("cad", "CAD")
-    from pareto_monoped.analysis.choices import counterpart, default_pick
+    from pareto_monoped.analysis.choices import counterpart, default_pick, settled
     from pareto_monoped.analysis.remarks import refuse_empty
     from pareto_monoped.cad.jobs import trial_job
     from pareto_monoped.cad.records import is_made
@@ -85,7 +85,13 @@ def pareto(
         steps.do("run", study_file, "--objectives", ",".join(other.names), "--db", dbs[1], *options)
     studies = [read_study(path) for path in dbs]
     refuse_empty(studies[0].front(), studies[0])
-    chosen = default_pick(studies[0], studies).trial
+
+    def begins_with(data: "StudyData") -> int:
+        return default_pick(data, [data, *studies[1:]]).trial
+
+    # The pick may be behind the front, where no design was audited.
+    first = settled(studies[0], lambda data: [begins_with(data)], notify=lambda text: echo(f"note: {text}", err=True))
+    studies[0], chosen = first, begins_with(first)
     design = cad / f"trial_{chosen}"
     job = trial_job(studies[0], chosen, folder=design)
     again = ["--force"] if (design / "design.json").exists() and not is_made(job) else []

@@ -30,7 +30,8 @@ def study(*front, motors=("U8",)):
     table["rise_m"] = (table["height_m"] / 3.0).where(table["trial"] != 9)
     table["above_standing_m"] = table["rise_m"] / 2.0
     return SimpleNamespace(
-        front=lambda: table,
+        front=lambda: table[table["trial"] != 1],
+        sound=table,
         study=SimpleNamespace(objectives=HEIGHT_AND_ENERGY, kits=[(name, name) for name in motors]),
         case_kit=joint_maps(map_for("U8")),
         calibration=load_calibration("ideal"),
@@ -44,7 +45,7 @@ def test_the_papers_design_stands_beside_the_fronts(simulated):
         ("paper's Case C, as published", 0.8, 15.36),
         ("paper's Case C, simulated here", height, simulated["energy_j"]),
         ("front: at least that height, trial 3", height + 0.01, 30.0),
-        ("front: exported, trial 7", 0.7, 10.0),
+        ("exported, trial 7", 0.7, 10.0),
     ]
     rises = [(row.rise_m, row.above_standing_m) for row in rows]
     assert np.isnan(rises[0]).all()
@@ -52,15 +53,21 @@ def test_the_papers_design_stands_beside_the_fronts(simulated):
     assert rises[3] == (0.7 / 3.0, 0.7 / 6.0)
 
 
+def test_the_chosen_design_may_be_behind_the_front(simulated):
+    """The main job crashed: the knee of the designs that are not dear was not on the front."""
+    rows = headline(study((7, 0.7, 10.0), (1, 0.6, 11.0)), 1)
+    assert [(row.label, row.height_m) for row in rows[2:]] == [("exported, trial 1", 0.6)]
+
+
 def test_a_study_without_rises_has_the_same_lines(simulated):
     rows = headline(study((7, 0.7, 10.0), (9, simulated["height_m"] + 0.1, 50.0)), 7)
-    assert [row.label for row in rows[2:]] == ["front: at least that height, trial 9", "front: exported, trial 7"]
+    assert [row.label for row in rows[2:]] == ["front: at least that height, trial 9", "exported, trial 7"]
     assert np.isnan(rows[2].rise_m)
 
 
 def test_a_front_below_the_papers_height_has_no_design_for_it():
     labels = [row.label for row in headline(study((7, 0.7, 10.0)), 7)]
-    assert labels[2:] == ["front: exported, trial 7"]
+    assert labels[2:] == ["exported, trial 7"]
 
 
 def test_with_several_motors_every_design_names_its_own(simulated):
@@ -68,5 +75,5 @@ def test_with_several_motors_every_design_names_its_own(simulated):
     assert labels == [
         "paper's Case C, as published",
         "paper's Case C, simulated here with U8",
-        "front: exported, trial 7, U10",
+        "exported, trial 7, U10",
     ]

@@ -129,18 +129,18 @@ def program(tmp_path):
     return ENVIRONMENT | {"PATH": f"{folder}:{os.environ['PATH']}"}
 
 
-def line_of_readme(shell):
-    """What the README puts at the end of the shell's configuration."""
-    lines = (ROOT / "README.md").read_text("utf-8").splitlines()
+def documented_line(shell):
+    """What the page puts at the end of the shell's configuration."""
+    lines = (ROOT / "docs" / "getting_started.md").read_text("utf-8").splitlines()
     (line,) = [line.strip() for line in lines if f"COMPLETE={shell}_source" in line]
     return line
 
 
 @pytest.mark.skipif(shutil.which("fish") is None, reason="there is no fish")
 def test_fish_completes(program, db):
-    """With the line of the README in a fish of its own."""
+    """With the documented line in a fish of its own."""
     script = (
-        f"{line_of_readme('fish')}\ncomplete -C 'pareto-monoped act'\ncomplete -C 'pareto-monoped pick {db} --trial '"
+        f"{documented_line('fish')}\ncomplete -C 'pareto-monoped act'\ncomplete -C 'pareto-monoped pick {db} --trial '"
     )
     run = subprocess.run(
         ["fish", "--no-config", "-c", script], env=program, capture_output=True, text=True, check=True, timeout=120
@@ -152,14 +152,14 @@ def test_fish_completes(program, db):
 
 @pytest.mark.skipif(shutil.which("zsh") is None, reason="there is no zsh")
 def test_zsh_completes(program, db):
-    """With the line of the README in a zsh of its own, in a terminal where Tab is pressed."""
+    """With the documented line in a zsh of its own, in a terminal where Tab is pressed."""
     import pty
 
     child, terminal = pty.fork()
     if child == 0:
         os.execvpe("zsh", ["zsh", "-f", "-i"], program | {"TERM": "dumb", "PS1": "> "})
     try:
-        typed = f"autoload -Uz compinit; compinit -u -D; {line_of_readme('zsh')}; echo rea''dy\n"
+        typed = f"autoload -Uz compinit; compinit -u -D; {documented_line('zsh')}; echo rea''dy\n"
         os.write(terminal, typed.encode())
         said_by(terminal, "ready")
         os.write(terminal, b"pareto-monoped act\t")
@@ -184,8 +184,8 @@ def said_by(terminal, words):
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
 def test_bash_completes(program):
-    """With the line of the README in a bash of its own, and the program on its path."""
-    script = f"""{line_of_readme("bash")}
+    """With the documented line in a bash of its own, and the program on its path."""
+    script = f"""{documented_line("bash")}
 COMP_WORDS=(pareto-monoped act) COMP_CWORD=1
 _pareto_monoped_completion pareto-monoped act pareto-monoped
 echo "${{COMPREPLY[@]}}"

@@ -128,22 +128,22 @@ def test_the_motor_shown_for_copying_has_a_map(tmp_path):
     assert {entry.actuator.family for entry in entries if entry.actuator} == {"ESSPG"}
 
 
-def blocks(language: str) -> str:
-    """The one block of a language in the README."""
-    (text,) = re.findall(rf"^```{language}\n(.*?)^```", (ROOT / "README.md").read_text("utf-8"), re.S | re.M)
+def block(language: str, page: str) -> str:
+    """The one block of a language on a page."""
+    (text,) = re.findall(rf"^```{language}\n(.*?)^```", (ROOT / "docs" / page).read_text("utf-8"), re.S | re.M)
     return text
 
 
-def test_the_study_of_the_readme_finds_designs_within_its_limits(tmp_path):
+def test_the_study_shown_finds_designs_within_its_limits(tmp_path):
     """Its limit of mass could not be met with the motor that it named."""
-    (tmp_path / "my_leg.toml").write_text(blocks("toml"), encoding="utf-8")
+    (tmp_path / "my_leg.toml").write_text(block("toml", "getting_started.md"), encoding="utf-8")
     stored = pm.run(tmp_path / "my_leg.toml", evaluations=80)
     assert len(stored.front()) > 5
 
 
-def test_the_program_of_the_readme_runs(tmp_path, monkeypatch, capsys):
+def test_the_program_shown_runs(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "program.py").write_text(blocks("python"), encoding="utf-8")
+    (tmp_path / "program.py").write_text(block("python", "python.md"), encoding="utf-8")
     runpy.run_path("program.py", run_name="__main__")
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert lines[0] == ["stiffness_n_per_m", "height_m", "energy_j", "status", "reason"]

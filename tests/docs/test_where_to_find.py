@@ -1,4 +1,4 @@
-"""The README's table "Where to find": every file and every name in it exists."""
+"""The table "Where to find" of docs/architecture.md: every file and every name in it exists."""
 
 import ast
 import re
@@ -7,11 +7,12 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 
 
 def rows() -> list[tuple[str, Path, str]]:
     """What is looked for, the file and one name in it, for each name of each row."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8").split("### Where to find")[1].split("\n- ")[0]
+    text = PAGE.split("## Where to find")[1].split("## Development")[0]
     found = []
     _heading, _rule, *lines = (line for line in text.splitlines() if line.startswith("|"))
     for line in lines:
@@ -61,7 +62,7 @@ def test_the_table_answers_what_newcomers_look_for():
 
 
 def test_the_tree_names_every_package_and_no_other():
-    tree = (ROOT / "README.md").read_text(encoding="utf-8").split("## Architecture")[1].split("A module imports")[0]
+    tree = PAGE.split("# Architecture")[1].split("A module imports")[0]
     named = set(re.findall(r"^ {8}(\w+(?:/|\.py)) ", tree, re.M))
     there = {
         path.name + ("/" if path.is_dir() else "")
