@@ -1,18 +1,26 @@
 """Write files so that they are complete or absent: first beside the target, then renamed.
 
-No output replaces a study, and none replaces a file of another kind unless ``force`` is set.
+No output replaces a study, and none replaces a file of another kind unless ``force`` is set. Arrays that every command
+would compute anew are kept in the user's cache.
 """
 
 import errno
+import hashlib
 import os
+import platform
 import secrets
 import stat
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
-from typing import BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from pareto_monoped.errors import DiskError, OutputError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 SQLITE = b"SQLite format 3\x00"  #: How a database begins (SQLite's file format, section 1.3).
 FORCE = "--force (in Python force=True)"  #: What allows an output to be replaced, on the command line and in Python.
@@ -222,3 +230,55 @@ def write_bytes(path: Path, data: bytes, *, force: bool = False) -> None:
     """Write ``data`` to ``path``, completely or not at all; see ``replacing``."""
     with replacing(path, force=force) as temporary:
         temporary.write_bytes(data)
+
+
+CACHE = "PARETO_MONOPED_CACHE"
+"""Environment variable: the folder of what is kept, instead of ``~/.cache/pareto_monoped``; empty keeps nothing."""
+_MOST_KEPT = 200  # files of some 20 kB each: about 30 motors
+
+
+def kept(key: str | None, make: Callable[[], Mapping[str, "NDArray[Any]"]]) -> Mapping[str, "NDArray[Any]"]:
+    """Return the arrays that ``make`` computes, from the user's cache if they were computed there before.
+
+    ``key`` must name everything that decides them but code, data files, NumPy and the machine, which are added to it;
+    None keeps nothing. Nothing is unpickled. Whatever is wrong with the cache or its files, the arrays are computed.
+    """
+    import numpy as np
+
+    if key is None or (folder := _cache_folder()) is None:
+        return make()
+    path = folder / f"{hashlib.sha256((_stamp() + key).encode()).hexdigest()[:32]}.npz"
+    # A damaged archive raises what its bytes lead to: errors of zipfile, zlib, struct and NumPy.
+    with suppress(Exception), path.open("rb") as stream, np.load(stream, allow_pickle=False) as stored:
+        return dict(stored)
+    made = make()
+    with suppress(OSError, OutputError, DiskError):
+        folder.mkdir(parents=True, exist_ok=True)
+        with temporary_beside(path) as temporary:
+            with temporary.open("wb") as stream:
+                np.savez(stream, allow_pickle=False, **made)
+            temporary.replace(path)
+        for old in sorted(folder.glob("*.npz"), key=lambda one: one.stat().st_mtime)[:-_MOST_KEPT]:
+            old.unlink(missing_ok=True)
+    return made
+
+
+def _cache_folder() -> Path | None:
+    named = os.environ.get(CACHE)
+    if named is not None:
+        return Path(named) if named else None
+    with suppress(RuntimeError):  # a user without a home
+        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "pareto_monoped"
+    return None
+
+
+@cache
+def _stamp() -> str:
+    """Return what changes with code and data of the package, with NumPy, and with the machine."""
+    import numpy as np
+
+    digest = hashlib.sha256(repr((sys.version, np.__version__, platform.machine(), platform.node())).encode())
+    for path in sorted(Path(__file__).parent.rglob("*")):
+        if path.suffix in (".py", ".toml"):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()

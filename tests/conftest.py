@@ -5,6 +5,7 @@ import gc
 import os
 import pickle
 import shutil
+import tempfile
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
@@ -47,7 +48,7 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
     return Folders(config, log)
 
 
-def pytest_configure() -> None:
+def pytest_configure(config: pytest.Config) -> None:
     """Set what holds for all processes; temporary files are kept in memory where there is room.
 
     A study waits for the disk a hundred times.
@@ -58,6 +59,19 @@ def pytest_configure() -> None:
     memory = Path("/dev/shm")
     if memory.is_dir() and shutil.disk_usage(memory).free > 8e9:
         os.environ.setdefault("PYTEST_DEBUG_TEMPROOT", str(memory))
+    if "PYTEST_XDIST_WORKER" not in os.environ:
+        # Tables that all processes of this run need are computed once, and none that an earlier run has left is read.
+        config.stash[KEPT] = tempfile.TemporaryDirectory(prefix="kept", dir=os.environ.get("PYTEST_DEBUG_TEMPROOT"))
+        os.environ["PARETO_MONOPED_CACHE"] = config.stash[KEPT].name
+
+
+KEPT = pytest.StashKey[tempfile.TemporaryDirectory]()
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """Remove what was kept."""
+    if KEPT in config.stash:
+        config.stash[KEPT].cleanup()
 
 
 def pytest_collection_finish() -> None:

@@ -108,6 +108,12 @@ class ActuatorMap:
     motor: Motor
     settings: ActuatorSettings
     entries: tuple[MapEntry, ...]
+    kept: bool = False  #: whether tables of its actuators are kept on disk, see ``files.kept``
+
+    @property
+    def key(self) -> str | None:
+        """Everything that decides the map, in a text; None for a map of which nothing is kept on disk."""
+        return repr((self.motor, self.settings)) if self.kept else None
 
     def __repr__(self) -> str:
         """One line: the motor, the rules, and how many ratios have a gearbox, of which mass."""

@@ -1,6 +1,7 @@
 """The exhaustive search of stage 1: every gear set, both families, the lightest in every ratio interval."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
 
@@ -96,15 +97,15 @@ def map_of(motor: Motor, rules: RuleSet = DEFAULT_RULES, *, source: str | None =
     Raises:
         MotorError: the motor has no gearbox at any ratio.
     """
-    found = _kept_map(motor, rules)
+    found = kept_map(motor, ActuatorSettings(rules=rules))
     found.require_gearbox(source or f"motor {motor.name}")
     return found
 
 
-# Without defaults, so that one map is kept however its rules were named.
 @lru_cache(maxsize=16)
-def _kept_map(motor: Motor, rules: RuleSet) -> ActuatorMap:
-    return build_map(motor, ActuatorSettings(rules=rules))
+def kept_map(motor: Motor, settings: ActuatorSettings) -> ActuatorMap:
+    """Return what ``build_map`` finds; kept for the next call, and tables of its actuators on disk."""
+    return replace(build_map(motor, settings), kept=True)
 
 
 def map_for(motor_name_or_path: str, rules: RuleSet = DEFAULT_RULES) -> ActuatorMap:

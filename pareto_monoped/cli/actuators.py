@@ -94,14 +94,14 @@ def actuators(
     """
     from pareto_monoped.actuator.explain import details, summary
     from pareto_monoped.actuator.motors import load_motor, motor_source
-    from pareto_monoped.actuator.search import build_map
+    from pareto_monoped.actuator.search import kept_map
     from pareto_monoped.actuator.service.sheet import service_sheet
     from pareto_monoped.actuator.settings import ActuatorSettings
 
     if as_json and csv_file == _STANDARD_OUTPUT:
         raise click.UsageError("--json and --csv - both print to standard output; drop one of them")
     settings = ActuatorSettings(rules=rules, constraints_off=frozenset(without), bearings=bearings)
-    actuator_map = build_map(load_motor(motor), settings)
+    actuator_map = kept_map(load_motor(motor), settings)
     entries = [entry for entry in actuator_map.entries if entry.actuator is not None]
     if csv_file and not entries:
         _write_csv(csv_file, [], rules, force=force)
@@ -115,7 +115,7 @@ def actuators(
         maps: dict[str, ActuatorMap] = {rules: actuator_map}
         for other in RULE_SETS:
             if other != rules:
-                maps[other] = build_map(actuator_map.motor, replace(settings, rules=other))
+                maps[other] = kept_map(actuator_map.motor, replace(settings, rules=other))
         write_map_figure(maps, figure_file, force=force)
     sheets = [service_sheet(entry.actuator, settings) for entry in entries if entry.actuator is not None]
     rows = [summary(entry, sheet) for entry, sheet in zip(entries, sheets, strict=True)]

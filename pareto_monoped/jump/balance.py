@@ -230,6 +230,10 @@ class Balanced:
     error: Floats  #: ``EnergyBalance.error``, shape (n,)
 
 
+_PER_THREAD = 16
+"""Jumps below which a thread gains nothing: all threads meet after every step, which takes as long as some steps."""
+
+
 @quiet()
 def balanced(robots: RobotArrays, control: Floats, calibration: Calibration, workers: int = 1) -> Balanced:
     """Return the jumps of n robots that can stand, with their balances."""
@@ -241,11 +245,12 @@ def balanced(robots: RobotArrays, control: Floats, calibration: Calibration, wor
         errors = [energy_balance(one, control[i : i + 1], calibration).error for i, one in enumerate(alone)]
         return _finished(population, np.array(errors))
     pose = start_pose(robots, calibration)
-    population = prepare(robots, control, pose, calibration, workers)
+    threads = max(1, min(workers, len(robots) // _PER_THREAD))
+    population = prepare(robots, control, pose, calibration, threads)
     damping = np.asarray(population.batch.expand("dof_damping"))
     start = np.array(population.batch.bind("qpos"))
     supplied, lost, qpos, qvel = _jumped(population, calibration, damping)
-    weighed = prepare(robots, control, pose, calibration, workers).batch
+    weighed = prepare(robots, control, pose, calibration, threads).batch
     gained = _energies_j(weighed, qpos - back_s(calibration) * qvel, qvel) - _energies_j(weighed, start, 0.0)
     return _finished(population, np.abs(supplied - gained - lost) / np.maximum(np.abs(supplied), 1e-12))
 

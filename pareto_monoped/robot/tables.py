@@ -16,8 +16,9 @@ carries.
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import lru_cache, reduce
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebval
@@ -26,6 +27,7 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.actuator import Actuator, turning_terms
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.actuator.service.sheet import service_sheet
+from pareto_monoped.files import kept
 from pareto_monoped.geometry.parts import MassProperties, Part, total
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.geometry.shapes import Floats
@@ -213,20 +215,30 @@ _OF_ACTUATORS = ("peak_torque_n_m", "continuous_torque_n_m", "no_load_speed_rad_
 @lru_cache(maxsize=16)
 def actuator_table(actuator_map: ActuatorMap) -> ActuatorTable:
     """Return the actuators of a map in numbers. The result is kept, as a map is asked for many times."""
+    return ActuatorTable(**kept(_key(actuator_map, "actuator_table"), lambda: _numbers_of(actuator_map)))
+
+
+def _key(actuator_map: ActuatorMap, *more: object) -> str | None:
+    """Return the key of a table of a map's actuators, see ``files.kept``."""
+    return None if actuator_map.key is None else repr((*more, actuator_map.key))
+
+
+def _numbers_of(actuator_map: ActuatorMap) -> dict[str, NDArray[Any]]:
+    """Return the fields of the ``ActuatorTable`` of a map."""
     actuators = _actuators(actuator_map)
     sheets = [service_sheet(a, actuator_map.settings) for a in actuators]
     row = np.cumsum([entry.actuator is not None for entry in actuator_map.entries]) - 1
-    return ActuatorTable(
-        row=np.maximum(row, 0),
-        ratio=np.array([a.ratio for a in actuators]),
-        armature_kg_m2=np.array([a.reflected_inertia_kg_m2 for a in actuators]),
-        coupling_kg_m2=np.array([actuator_coupling_kg_m2(a) for a in actuators]),
-        rotor_inertia_kg_m2=np.array([rotor_inertia_kg_m2(a) for a in actuators]),
-        rotor_excess_kg_m2=np.array([rotor_excess_kg_m2(a) for a in actuators]),
+    return {
+        "row": np.maximum(row, 0),
+        "ratio": np.array([a.ratio for a in actuators]),
+        "armature_kg_m2": np.array([a.reflected_inertia_kg_m2 for a in actuators]),
+        "coupling_kg_m2": np.array([actuator_coupling_kg_m2(a) for a in actuators]),
+        "rotor_inertia_kg_m2": np.array([rotor_inertia_kg_m2(a) for a in actuators]),
+        "rotor_excess_kg_m2": np.array([rotor_excess_kg_m2(a) for a in actuators]),
         **{name: np.array([getattr(a, name) for a in actuators]) for name in _OF_ACTUATORS},
-        efficiency_total=np.array([sheet.losses.efficiency_total for sheet in sheets]),
-        compliance_rad_per_n_m=np.array([1.0 / sheet.stiffness.stiffness_n_m_per_rad for sheet in sheets]),
-    )
+        "efficiency_total": np.array([sheet.losses.efficiency_total for sheet in sheets]),
+        "compliance_rad_per_n_m": np.array([1.0 / sheet.stiffness.stiffness_n_m_per_rad for sheet in sheets]),
+    }
 
 
 def _actuators(actuator_map: ActuatorMap) -> list[Actuator]:
@@ -240,19 +252,36 @@ def actuator_units(joint: str, actuator_map: ActuatorMap, leg: LegDimensions) ->
     Returns:
         Name -> mass properties of the joint's ``ActuatorSized`` units in their body frames, one row per actuator.
     """
-    actuators = _actuators(actuator_map)
+    kinds = _kinds(joint)
+
+    def weigh() -> dict[str, Floats]:
+        actuators = _actuators(actuator_map)
+        weighed = [unit.in_body(_stacked(unit.parts(one, leg) for one in actuators), leg) for unit in kinds]
+        return {f"{k} {name}": getattr(mass, name) for k, mass in enumerate(weighed) for name in _MOMENTS}
+
+    found = kept(_key(actuator_map, "actuator_units", joint, leg), weigh)
     return {
-        unit.name: unit.in_body(_stacked(unit.parts(actuator, leg) for actuator in actuators), leg)
-        for unit in UNITS
-        if isinstance(unit, ActuatorSized) and unit.joint == joint
+        unit.name: MassProperties(**{name: found[f"{k} {name}"] for name in _MOMENTS}) for k, unit in enumerate(kinds)
     }
+
+
+_MOMENTS = tuple(one.name for one in fields(MassProperties))
+
+
+def _kinds(joint: str) -> list[ActuatorSized]:
+    """Return the units that depend on the actuator of a joint."""
+    return [unit for unit in UNITS if isinstance(unit, ActuatorSized) and unit.joint == joint]
 
 
 @lru_cache(maxsize=128)
 def actuator_costs(joint: str, actuator_map: ActuatorMap, leg: LegDimensions) -> Floats:
     """Return the rows of ``priced`` for the same units with every actuator of a map, shape (4, k). It is kept."""
-    kinds = [unit for unit in UNITS if isinstance(unit, ActuatorSized) and unit.joint == joint]
-    return np.stack([priced(unit.parts(one, leg) for unit in kinds) for one in _actuators(actuator_map)], axis=1)
+
+    def price() -> dict[str, Floats]:
+        rows = [priced(unit.parts(one, leg) for unit in _kinds(joint)) for one in _actuators(actuator_map)]
+        return {"costs": np.stack(rows, axis=1)}
+
+    return kept(_key(actuator_map, "actuator_costs", joint, leg), price)["costs"]
 
 
 def _stacked(units: Iterable[tuple[Part, ...]]) -> MassProperties:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.ratiomap import ActuatorMap, JointMaps, Maps, joint_maps
 from pareto_monoped.design import NAMES, Design, complete
+from pareto_monoped.files import kept
 from pareto_monoped.geometry.shapes import Floats
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.strength import chain, drive, gears, knee, links, mounts, plates, stops, threads
@@ -85,7 +86,23 @@ _OTHERS = {of: tuple(k for k in rows if k not in _PLAIN[of]) for of, rows in _RO
 
 @lru_cache(maxsize=64)
 def capacities(maps: JointMaps) -> Capacities:
-    """Compute the capacities of every joint once per gearbox, or once per leg; the result is kept."""
+    """Return the capacities of every joint, computed once per gearbox, or once per leg; the result is kept."""
+    keys = maps.hip.key, maps.knee.key
+    found = kept(None if None in keys else repr(("capacities", keys)), lambda: _blocks(maps))
+    columns: list[slice] = [slice(0)] * len(TABLE)
+    for of, rows in _ROWS.items():
+        ends = found[f"{of} ends"].tolist()
+        for k, start, end in zip(rows, [0, *ends], ends, strict=False):
+            columns[k] = slice(start, end)
+    return Capacities(
+        row={side: _rows(maps.of(side)) for side in SIDES},
+        values={of: found[of] for of in _ROWS},
+        columns=tuple(columns),
+    )
+
+
+def _blocks(maps: JointMaps) -> dict[str, NDArray[Any]]:
+    """Return the values of ``Capacities``, and where the columns of each row of ``TABLE`` end in them."""
     leg = leg_dimensions(maps)
     structures = {
         one: [
@@ -109,15 +126,12 @@ def capacities(maps: JointMaps) -> Capacities:
             found[key] = np.array([np.atleast_1d(number) for number in numbers], dtype=np.float64)
         return found[key]
 
-    columns: list[slice] = [slice(0)] * len(TABLE)
-    values: dict[Of, Floats] = {}
+    blocks: dict[str, NDArray[Any]] = {}
     for of, rows in _ROWS.items():
         own = [of_joint(TABLE[k]) for k in rows]
-        ends = np.cumsum([block.shape[1] for block in own]).tolist()
-        for k, block, end in zip(rows, own, ends, strict=True):
-            columns[k] = slice(end - block.shape[1], end)
-        values[of] = np.concatenate(own, axis=1) if own else np.zeros((1, 0))
-    return Capacities(row={side: _rows(maps.of(side)) for side in SIDES}, values=values, columns=tuple(columns))
+        blocks[f"{of} ends"] = np.cumsum([block.shape[1] for block in own])
+        blocks[of] = np.concatenate(own, axis=1) if own else np.zeros((1, 0))
+    return blocks
 
 
 def _rows(actuator_map: ActuatorMap) -> NDArray[np.intp]:

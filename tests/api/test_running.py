@@ -7,7 +7,7 @@ import pytest
 import pareto_monoped as pm
 from pareto_monoped.cli import _run as cli
 
-FILE = 'name = "small"\nevaluations = 160\nseed = 5\n[algorithm]\nname = "nsga2"\npopulation = 20\n'
+FILE = 'name = "small"\nevaluations = 160\nseed = 5\naudit = false\n[algorithm]\nname = "nsga2"\npopulation = 20\n'
 
 
 @pytest.fixture
@@ -33,7 +33,8 @@ def test_a_run_makes_the_trials_of_the_command_line(file, tmp_path):
 
 
 def test_a_study_from_python_is_that_of_its_file(file):
-    study = pm.Study.define(name="small", evaluations=160, seed=5, algorithm={"name": "nsga2", "population": 20})
+    algorithm = {"name": "nsga2", "population": 20}
+    study = pm.Study.define(name="small", evaluations=160, seed=5, audit=False, algorithm=algorithm)
     assert study == pm.Study.from_toml(file) == pm.Study.from_toml(str(file), seed=5)
     assert pm.Study.from_toml(file, algorithm="random").algorithm.name == "random"
 

@@ -42,7 +42,7 @@ HEAVY = {"export", "export_trial"}
 def made(tmp_path_factory):
     """Arguments that each function takes, and the folder of what they name."""
     folder = tmp_path_factory.mktemp("right")
-    tiny = {"name": "tiny", "evaluations": 4, "algorithm": "random"}
+    tiny = {"name": "tiny", "evaluations": 4, "algorithm": "random", "audit": False}
     study, design = pm.Study.define(**tiny), pm.PAPER_CASES["C"].design
     pm.run(study, folder / "tiny.db")
     (folder / "full").mkdir()
