@@ -255,8 +255,8 @@ def kept(key: str | None, make: Callable[[], Mapping[str, "NDArray[Any]"]]) -> M
     with suppress(OSError, OutputError, DiskError):
         folder.mkdir(parents=True, exist_ok=True)
         with temporary_beside(path) as temporary:
-            with temporary.open("wb") as stream:
-                np.savez(stream, allow_pickle=False, **made)
+            with temporary.open("wb") as target:
+                np.savez(target, allow_pickle=False, **made)
             temporary.replace(path)
         for old in sorted(folder.glob("*.npz"), key=lambda one: one.stat().st_mtime)[:-_MOST_KEPT]:
             old.unlink(missing_ok=True)

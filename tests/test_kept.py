@@ -9,6 +9,10 @@ import numpy as np
 import pytest
 
 from pareto_monoped import files
+from pareto_monoped.actuator.motors import load_motor
+from pareto_monoped.actuator.search import build_map
+from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.design import RULE_SETS
 from pareto_monoped.files import CACHE, kept
 
 FIRST = {"a": np.array([1.0, np.nan, -0.0]), "b": np.arange(6).reshape(2, 3)}
@@ -142,3 +146,19 @@ def test_the_place_is_the_cache_of_the_user(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     kept("key", lambda: FIRST)
     assert [path.parent for path in tmp_path.rglob("*.npz")] == [tmp_path / "pareto_monoped"]
+
+
+@pytest.mark.parametrize("rules", RULE_SETS)
+def test_a_map_from_what_is_kept_is_that_of_the_search(folder, rules):
+    """To the type of each number: both print alike."""
+    motor, settings = load_motor("MAD_M6C12"), ActuatorSettings(rules=rules)
+    searched = build_map(motor, settings)
+    assert list(folder.glob("*")) == []
+    for _ in range(2):
+        found = build_map(motor, settings, keep=True)
+        assert found.entries == searched.entries
+        for one, other in zip(found.entries, searched.entries, strict=True):
+            assert repr((one.runner_up, one.families, one.binding)) == repr(
+                (other.runner_up, other.families, other.binding)
+            )
+    assert len(list(folder.glob("*"))) == (motor.framed is not None) + (motor.frameless is not None)

@@ -1,14 +1,15 @@
 """The exhaustive search of stage 1: every gear set, both families, the lightest in every ratio interval."""
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import Actuator, build_actuator
-from pareto_monoped.actuator.gearset import joined
+from pareto_monoped.actuator.gearset import GearSet, joined
 from pareto_monoped.actuator.judge import Judge, candidates
 from pareto_monoped.actuator.layout import FAMILIES, Family, radial_room_mm
 from pareto_monoped.actuator.motor import Motor
@@ -18,6 +19,7 @@ from pareto_monoped.actuator.rating.sheet import ratings
 from pareto_monoped.actuator.ratiomap import RATIO_HIGH, RATIO_LOW, ActuatorMap, Candidate, FamilyResult, MapEntry
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.design import DEFAULT_RULES, RuleSet
+from pareto_monoped.files import kept
 
 
 def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[int, FamilyResult]:
@@ -53,11 +55,53 @@ def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[in
     return found
 
 
-def build_map(motor: Motor, settings: ActuatorSettings | None = None) -> ActuatorMap:
-    """Search the map of a motor exhaustively, so that every entry is the optimum of its interval."""
+_COUNTED = ("sun_teeth", "planet_teeth", "ring_teeth", "planets")
+_MEASURED = ("module_mm", "centre_shift", "sun_shift", "backlash_mm")
+
+
+def _as_arrays(found: Mapping[int, FamilyResult]) -> dict[str, NDArray[Any]]:
+    """Return what ``_search`` found as arrays; NaN in place of sets that there are not."""
+    numbers = np.full((len(found), 2, len(_COUNTED + _MEASURED) + 3), np.nan)
+    for row, result in enumerate(found.values()):
+        for place, one in enumerate((result.best, result.runner_up)):
+            if one is not None:
+                gears = [getattr(one.gears, name) for name in _COUNTED + _MEASURED]
+                numbers[row, place] = [*gears, one.gears.tips_fitted, one.face_width_mm, one.mass_kg]
+    in_the_way = [" ".join(result.in_the_way) for result in found.values()]
+    return {"low": np.array(list(found)), "numbers": numbers, "in_the_way": np.array(in_the_way)}
+
+
+def _from_arrays(stored: Mapping[str, NDArray[Any]], family: Family) -> dict[int, FamilyResult]:
+    """Return what ``_search`` found from its arrays."""
+
+    def candidate(numbers: Sequence[float]) -> Candidate | None:
+        if np.isnan(numbers[0]):
+            return None
+        *gears, fitted, width_mm, mass_kg = numbers
+        counted = {name: int(value) for name, value in zip(_COUNTED, gears, strict=False)}
+        measured = dict(zip(_MEASURED, gears[len(_COUNTED) :], strict=True))
+        found = GearSet(**counted, **measured, tips_fitted=bool(fitted))
+        return Candidate(family=family, gears=found, face_width_mm=width_mm, mass_kg=mass_kg)
+
+    rows = zip(*(stored[name].tolist() for name in ("low", "numbers", "in_the_way")), strict=True)
+    return {
+        low: FamilyResult(best=candidate(best), runner_up=candidate(next_best), in_the_way=tuple(names.split()))
+        for low, (best, next_best), names in rows
+    }
+
+
+def build_map(motor: Motor, settings: ActuatorSettings | None = None, *, keep: bool = False) -> ActuatorMap:
+    """Search the map of a motor exhaustively, so that every entry is the optimum of its interval.
+
+    With ``keep``, what the search finds and tables of the map's actuators are kept on disk, see ``files.kept``.
+    """
     settings = settings or ActuatorSettings()
     present: dict[Family, bool] = {"ISSPG": motor.frameless is not None, "ESSPG": motor.framed is not None}
-    searched = {family: _search(motor, family, settings) for family in FAMILIES if present[family]}
+    searched = {}
+    for family in (family for family in FAMILIES if present[family]):
+        key = repr(("search", family, motor, settings)) if keep else None
+        stored = kept(key, lambda family=family: _as_arrays(_search(motor, family, settings)))  # type: ignore[misc]
+        searched[family] = _from_arrays(stored, family)
     pools = {}
     for low in range(10 * RATIO_LOW, 10 * RATIO_HIGH):
         found = [each for results in searched.values() for each in (results[low].best, results[low].runner_up)]
@@ -72,7 +116,7 @@ def build_map(motor: Motor, settings: ActuatorSettings | None = None) -> Actuato
         )
         for low, pool in pools.items()
     )
-    return ActuatorMap(motor=motor, settings=settings, entries=entries)
+    return ActuatorMap(motor=motor, settings=settings, entries=entries, kept=keep)
 
 
 def _built(motor: Motor, winners: Mapping[int, Candidate], settings: ActuatorSettings) -> dict[int, Actuator]:
@@ -105,7 +149,7 @@ def map_of(motor: Motor, rules: RuleSet = DEFAULT_RULES, *, source: str | None =
 @lru_cache(maxsize=16)
 def kept_map(motor: Motor, settings: ActuatorSettings) -> ActuatorMap:
     """Return what ``build_map`` finds; kept for the next call, and tables of its actuators on disk."""
-    return replace(build_map(motor, settings), kept=True)
+    return build_map(motor, settings, keep=True)
 
 
 def map_for(motor_name_or_path: str, rules: RuleSet = DEFAULT_RULES) -> ActuatorMap:

@@ -14,7 +14,7 @@ from pareto_monoped.design import Floats
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.end_stops import end_stops, slow_torque_n_m
 from pareto_monoped.jump.model import coordinates, gear_efficiency, joint_places, motor_places, start_pose
-from pareto_monoped.jump.population import Population, prepare
+from pareto_monoped.jump.population import Population, prepare, threads_for
 from pareto_monoped.jump.quiet import quiet
 from pareto_monoped.jump.single import Moment, constraint_forces, moments
 from pareto_monoped.jump.variations import take
@@ -230,10 +230,6 @@ class Balanced:
     error: Floats  #: ``EnergyBalance.error``, shape (n,)
 
 
-_PER_THREAD = 16
-"""Jumps below which a thread gains nothing: all threads meet after every step, which takes as long as some steps."""
-
-
 @quiet()
 def balanced(robots: RobotArrays, control: Floats, calibration: Calibration, workers: int = 1) -> Balanced:
     """Return the jumps of n robots that can stand, with their balances."""
@@ -245,7 +241,7 @@ def balanced(robots: RobotArrays, control: Floats, calibration: Calibration, wor
         errors = [energy_balance(one, control[i : i + 1], calibration).error for i, one in enumerate(alone)]
         return _finished(population, np.array(errors))
     pose = start_pose(robots, calibration)
-    threads = max(1, min(workers, len(robots) // _PER_THREAD))
+    threads = threads_for(len(robots), workers)
     population = prepare(robots, control, pose, calibration, threads)
     damping = np.asarray(population.batch.expand("dof_damping"))
     start = np.array(population.batch.bind("qpos"))

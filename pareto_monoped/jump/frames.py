@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pareto_monoped.design import GRAVITY_M_PER_S2, Floats, complete_control
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.model import start_pose
-from pareto_monoped.jump.population import Population, Records, prepare
+from pareto_monoped.jump.population import Population, Records, prepare, threads_for
 from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import RobotArrays
 
@@ -70,47 +70,53 @@ def recordings(
         rows = np.arange(start, min(start + _CHUNK, len(robots)))
         chosen = take(robots, rows)
         pose = start_pose(chosen, calibration)
-        population = prepare(chosen, control[rows], pose, calibration, workers)
+        population = prepare(chosen, control[rows], pose, calibration, threads_for(len(rows), workers))
         result += _chosen_frames(_course(population), population.records, frames)
     return result
 
 
-def _course(population: Population) -> Floats:
-    """Return ``FRAME_COLUMNS`` at every step of every jump, shape (n, steps, columns); zero after a jump's end."""
+_READ = ("position", "velocity", "directions", "motor_torque_n_m")
+"""Fields of a record that are read after every step; each but the last has four numbers."""
+
+
+def _course(population: Population) -> list[Floats]:
+    """Return ``FRAME_COLUMNS`` at every step of each jump, n arrays of shape (steps, columns)."""
     from mujoco import batch
 
     from pareto_monoped.jump.callback import controlled
     from pareto_monoped.jump.controller import DIVERGED, FLYING
 
     records = population.records
-    course = np.zeros((len(records), _FIRST_ROOM, len(FRAME_COLUMNS)))
-    momentum, body = np.zeros(len(records)), _Bodies.of(records)
-    weight_n = body.mass_kg.sum(axis=1) * GRAVITY_M_PER_S2
-    status, torque = records["status"], records["motor_torque_n_m"]
-    step = 0
+    seen, steps = np.zeros((len(records), _FIRST_ROOM, 14)), np.zeros(len(records), dtype=np.intp)
+    fields_read = [(slice(4 * k, min(4 * k + 4, 14)), records[name]) for k, name in enumerate(_READ)]
+    status, step = records["status"], 0
     with controlled():
         while len(ids := np.flatnonzero(status <= FLYING)):
-            if step == course.shape[1]:
-                course = np.concatenate((course, np.zeros_like(course)), axis=1)
+            if step == seen.shape[1]:
+                seen = np.concatenate((seen, np.zeros_like(seen)), axis=1)
             try:
                 population.batch.step(ids, 1)
             except batch.SimulationError as problem:
                 status[problem.ids] = DIVERGED
-            # A record is long: only the fields in question are read.
-            position, velocity, directions = (records[name][ids] for name in ("position", "velocity", "directions"))
-            now = take(body, ids)
-            course[ids, step, :4] = position
-            course[ids, step, 4:6] = velocity[:, 2:]
-            course[ids, step, 6:8] = np.where((status[ids] <= FLYING)[:, None], torque[ids], 0.0)
-            course[ids, step, 8] = now.clearance_m(position, directions) <= 0.0
-            risen = now.momentum_kg_m_per_s(velocity, directions)
-            if step:
-                # What changes the upward momentum is the floor's force against the weight and the friction of rails.
-                rails_n = np.copysign(records["rail_friction_n"][ids], velocity[:, 1])
-                course[ids, step - 1, 8] *= (risen - momentum[ids]) / now.step_s + weight_n[ids] + rails_n
-            momentum[ids] = risen
+            for columns, values in fields_read:
+                seen[ids, step, columns] = values[ids]
+            steps[ids] += 1
             step += 1
-    return course[:, :step]
+    body, rails_n = _Bodies.of(records), records["rail_friction_n"]
+    return [_of_jump(seen[i, : steps[i]], take(body, np.array([i])), rails_n[i]) for i in range(len(records))]
+
+
+def _of_jump(seen: Floats, body: "_Bodies", rails_n: float) -> Floats:
+    """Return ``FRAME_COLUMNS`` of a jump from what was read after its steps, ``_READ``, shape (steps, 14)."""
+    position, velocity, directions, torque = np.split(seen, (4, 8, 12), axis=1)
+    touches = body.clearance_m(position, directions) <= 0.0
+    course: Floats = np.column_stack((position, velocity[:, 2:], torque, touches.astype(np.float64)))
+    course[-1:, 6:8] = 0.0  # the controller ends a jump at the beginning of a step
+    risen = body.momentum_kg_m_per_s(velocity, directions)
+    # What changes the upward momentum is the floor's force against the weight and the friction of rails.
+    weight_n = body.mass_kg.sum(axis=1) * GRAVITY_M_PER_S2
+    course[:-1, 8] *= np.diff(risen) / body.step_s + weight_n + np.copysign(rails_n, velocity[1:, 1])
+    return course
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -149,7 +155,7 @@ class _Bodies:
         return np.asarray(self.mass_kg[:, 0] * rise + self.mass_kg[:, 1] * at_thigh + self.mass_kg[:, 2] * at_shank)
 
 
-def _chosen_frames(course: Floats, records: Records, frames: int) -> list[Recording | None]:
+def _chosen_frames(course: list[Floats], records: Records, frames: int) -> list[Recording | None]:
     from pareto_monoped.jump.controller import APEX
 
     found: list[Recording | None] = []

@@ -39,6 +39,14 @@ _WARNINGS = {
 }  #: MuJoCo's warnings in our words, those that say most first.
 
 
+def threads_for(jumps: int, workers: int) -> int:
+    """Return how many threads step jumps of which something is read after every step.
+
+    All threads meet after each step, which takes them as long as some jumps' steps. Our own choice: 16 jumps each.
+    """
+    return max(1, min(workers, jumps // 16))
+
+
 @dataclass(slots=True, kw_only=True)
 class Population:
     """The jumps of n robots in progress."""

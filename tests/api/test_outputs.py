@@ -13,7 +13,9 @@ C = pm.PAPER_CASES["C"].design
 
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory):
-    return pm.run(pm.Study.define(name="s", evaluations=120, seed=3), tmp_path_factory.mktemp("o") / "s.db")
+    return pm.run(
+        pm.Study.define(name="s", evaluations=120, seed=3, audit=False), tmp_path_factory.mktemp("o") / "s.db"
+    )
 
 
 @pytest.mark.usefixtures("unchecked")

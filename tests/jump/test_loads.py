@@ -19,6 +19,10 @@ SMOOTH = replace(REFERENCE, joints=replace(REFERENCE.joints, friction_n_m=0.0))
 STEP = REFERENCE.simulation.timestep_s
 
 
+EVERY = pytest.mark.parametrize("every", [3, pytest.param(1, marks=pytest.mark.long)])
+"""Which share of the designs jumps in the plain loop."""
+
+
 @pytest.fixture(scope="module")
 def designs():
     paper = [case.design.as_array() for case in PAPER_CASES.values()]
@@ -96,23 +100,25 @@ def loads_by_mujoco(robots, control, calibration):
     }
 
 
+@EVERY
 @pytest.mark.parametrize("rotors", ["armature", "absolute"])
-def test_loads_are_those_of_the_constraints(designs, rotors):
+def test_loads_are_those_of_the_constraints(designs, rotors, every):
     actuator_map = map_for("VT8020")
     calibration = replace(SMOOTH, joints=replace(SMOOTH.joints, rotors=rotors))
     evaluations = Evaluator(actuator_map, calibration)(designs)
     assert evaluations.ok.all()
-    for i, design in enumerate(designs):
+    for i, design in list(enumerate(designs))[::every]:
         robots = robot_arrays(design, actuator_map)
         # MuJoCo's contact point lies in the middle of the foot's 2 mm of compression, ours at its sole.
         for name, value in loads_by_mujoco(robots, columns(design[None], CONTROL), calibration).items():
             assert getattr(evaluations, name)[i] == pytest.approx(value, rel=1e-3, abs=1e-6), (name, i)
 
 
-def test_coulomb_friction_is_counted_with_the_stop(designs):
+@EVERY
+def test_coulomb_friction_is_counted_with_the_stop(designs, every):
     actuator_map = map_for("VT8020")
     evaluations = Evaluator(actuator_map, REFERENCE)(designs)
-    for i, design in enumerate(designs):
+    for i, design in list(enumerate(designs))[::every]:
         expected = loads_by_mujoco(robot_arrays(design, actuator_map), columns(design[None], CONTROL), REFERENCE)
         off = abs(evaluations.peak_stop_torque_n_m[i] - expected["peak_stop_torque_n_m"])
         assert off < REFERENCE.joints.friction_n_m + 0.05

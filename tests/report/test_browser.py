@@ -14,7 +14,7 @@ from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.pareto.selectors import Condition
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.exports import model_of
-from pareto_monoped.report.page import build, page, write_report
+from pareto_monoped.report.page import build, page, payload_of
 from tests.report.conftest import cut, grown
 
 pytestmark = pytest.mark.browser
@@ -320,7 +320,7 @@ def test_studies_that_are_not_much_of_one_give_a_sensible_page(data, resimulatio
 
 def test_several_studies_lie_over_each_other_and_can_be_switched(db, more_seeds, weighted, folder, open_tab):
     file = folder / "several.html"
-    write_report([db, *more_seeds, weighted], file)
+    file.write_text(page(payload_of([db, *more_seeds, weighted], most_jumps=1)), encoding="utf-8")
     tab = open_tab(file)
     tab.scroll_through()
 

@@ -21,7 +21,8 @@ from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
 
-SETS = 500
+SETS = pytest.mark.parametrize("sets", [150, pytest.param(500, marks=pytest.mark.long)])
+"""How many sets of conditions are drawn."""
 STUDIES = {
     "mechanical": {"seed": 1},
     "battery": {"seed": 2, "objectives": ["height_m", "electrical_energy_j"]},
@@ -105,10 +106,11 @@ def sides(conditions):
     return at_least, {name: value for name, (side, value) in conditions.items() if side == "max"}
 
 
-def test_the_api_and_pick_answer_as_brute_force_over_all_trials(studies, records, capsys):
+@SETS
+def test_the_api_and_pick_answer_as_brute_force_over_all_trials(studies, records, capsys, sets):
     rng, refused = random.Random(7), 0
     stored = {name: pm.load_study(db) for name, db in studies.items()}
-    for k in range(SETS):
+    for k in range(sets):
         name = list(STUDIES)[k % 5]
         designs, objectives = records[name], stored[name].study.objectives.names
         conditions = drawn(rng, designs)
@@ -134,7 +136,7 @@ def test_the_api_and_pick_answer_as_brute_force_over_all_trials(studies, records
             assert json.loads(capsys.readouterr().out)["trial"] == answer["trial"]
             inside = stored[name].front(at_least=at_least, at_most=at_most)
             assert set(inside["trial"]) == {one["trial"] for one in front_of(able, objectives)}
-    assert SETS / 20 < refused < SETS / 2
+    assert sets / 20 < refused < sets / 2
 
 
 def weighted(designs, objectives, weights):
@@ -153,9 +155,10 @@ def weighted(designs, objectives, weights):
 def test_choosers_on_the_front_within_are_scaled_to_the_whole_front(studies, records):
     """A condition that the answer meets never changes it; one that it misses brings the next best."""
     rng = random.Random(8)
+    loaded = {name: pm.load_study(db) for name, db in studies.items()}
     for k in range(60):
         name = list(STUDIES)[k % 5]
-        stored, designs = pm.load_study(studies[name]), records[name]
+        stored, designs = loaded[name], records[name]
         objectives = stored.study.objectives.names
         weights = [rng.choice([0.5, 1.0, 2.0]) for _ in objectives]
         costs = weighted(designs, objectives, weights)
@@ -172,6 +175,7 @@ def test_choosers_on_the_front_within_are_scaled_to_the_whole_front(studies, rec
 
 def test_a_refusal_offers_what_brute_force_finds(studies, records):
     rng, checked = random.Random(9), 0
+    loaded = {name: pm.load_study(db) for name, db in studies.items()}
     for k in range(200):
         name = list(STUDIES)[k % 5]
         designs = records[name]
@@ -180,7 +184,7 @@ def test_a_refusal_offers_what_brute_force_finds(studies, records):
             continue
         at_least, at_most = sides(conditions)
         with pytest.raises(SelectionError) as caught:
-            pm.load_study(studies[name]).pick(at_least=at_least, at_most=at_most)
+            loaded[name].pick(at_least=at_least, at_most=at_most)
         offered = re.findall(r"(min|max) (\w+) = (\S+)", str(caught.value).partition("; met with ")[2])
         for side, about, value in offered:
             assert conditions[about][0] == side
@@ -269,8 +273,9 @@ def files(studies, tmp_path_factory):
     return found
 
 
+@SETS
 @pytest.mark.browser
-def test_the_page_answers_as_brute_force_over_all_trials_shown(files, records, studies, open_tab):
+def test_the_page_answers_as_brute_force_over_all_trials_shown(files, records, studies, open_tab, sets):
     rng, refused, ways = random.Random(10), 0, ["", "", "knee", "compromise", "least", "most"]
     for names in PAGES:
         tab = open_tab(files[names])
@@ -278,7 +283,7 @@ def test_the_page_answers_as_brute_force_over_all_trials_shown(files, records, s
         objectives = pm.load_study(studies[names[0]]).study.objectives.names
         designs = [one | {"study": name} for name in names for one in records[name]]
         losses = {way: scaled_losses(designs, objectives, way) for way in ("knee", "compromise")}
-        for _ in range(SETS // len(PAGES)):
+        for _ in range(sets // len(PAGES)):
             conditions, way = drawn(rng, designs), rng.choice(ways)
             extreme = rng.choice(NAMES)
             able = [one for one in designs if meets(one, conditions)]
@@ -304,7 +309,7 @@ def test_the_page_answers_as_brute_force_over_all_trials_shown(files, records, s
             )
             assert said.endswith(count)
         assert tab.complaints == []
-    assert refused > SETS / 20
+    assert refused > sets / 20
 
 
 def asked(tab, conditions, way):
