@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import Floats
 from pareto_monoped.jump.calibration import Calibration, SpringContact
+from pareto_monoped.jump.controller_record import OBSERVED
 from pareto_monoped.jump.model import StartPose, joint_friction_n_m, start_qpos
 from pareto_monoped.jump.population import Records, first_records, prepare
 from pareto_monoped.jump.variations import Variations, vary_records
@@ -23,6 +24,9 @@ class Jumping(Protocol):
 
     def run(self) -> None:
         """Make all jumps to their end."""
+
+    def observed(self) -> list[Floats]:
+        """Make all jumps to their end, and return ``OBSERVED`` of each, n arrays of shape (steps, 14)."""
 
     def complaints(self) -> list[str]:
         """Return what the engine found wrong in each jump; empty where nothing was."""
@@ -54,6 +58,17 @@ class PlanarPopulation:
 
     def run(self) -> None:
         """Make all jumps to their end; a jump beyond all bounds ends as diverged."""
+        self._run(np.empty((len(self.records), 0, sum(OBSERVED.values()))))
+
+    def observed(self) -> list[Floats]:
+        """Make all jumps to their end, and return ``OBSERVED`` of each, n arrays of shape (steps, 14)."""
+        # Memory that no step is written to costs nothing.
+        room = int(self.records["step_limit"].max(initial=0.0)) + 1
+        seen = np.empty((len(self.records), room, sum(OBSERVED.values())))
+        self._run(seen)
+        return [one[:steps] for one, steps in zip(seen, self.records["steps"].astype(int), strict=True)]
+
+    def _run(self, seen: Floats) -> None:
         from pareto_monoped.jump.planar import stepper
 
         jumps, n = stepper(), len(self.records)
@@ -61,7 +76,7 @@ class PlanarPopulation:
         parts = [slice(first, last) for first, last in pairwise(cuts)]
 
         def of_part(rows: slice) -> None:
-            jumps(self.records[rows], self.grounds[rows], self.start[rows], self.controls)
+            jumps(self.records[rows], self.grounds[rows], self.start[rows], self.controls, seen[rows])
 
         if len(parts) == 1:
             of_part(parts[0])

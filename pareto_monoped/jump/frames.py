@@ -1,7 +1,7 @@
 """The course of many jumps in a few frames each, for an animation or a chart over time.
 
-Batches are stepped one step at a time and read from the controller's records. A trace of ``jump.single`` has more
-columns and every step, and takes thirty times as long.
+Batches jump by the engine of the calibration and are read from the controller's records after every step. A trace of
+``jump.single`` is MuJoCo's, has more columns and every step, and takes thirty times as long.
 """
 
 from collections.abc import Mapping
@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import GRAVITY_M_PER_S2, Floats, complete_control
 from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.engines import Jumping, population_of
 from pareto_monoped.jump.model import start_pose
-from pareto_monoped.jump.population import Population, Records, prepare, threads_for
+from pareto_monoped.jump.population import Records, threads_for
 from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import RobotArrays
 
@@ -23,9 +24,8 @@ FRAME_COLUMNS = (
 )  # fmt: skip
 """Columns of a recording, with the meaning that they have in ``jump.single.TRACE_COLUMNS``."""
 
-# Jumps stepped together: few enough that their whole course fits into some ten megabytes.
-_CHUNK = 256
-_FIRST_ROOM = 512  # steps that there is room for at first; most jumps end sooner
+# Jumps stepped together: few enough that their whole course fits into some thirty megabytes.
+_CHUNK = 64
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,44 +70,20 @@ def recordings(
         rows = np.arange(start, min(start + _CHUNK, len(robots)))
         chosen = take(robots, rows)
         pose = start_pose(chosen, calibration)
-        population = prepare(chosen, control[rows], pose, calibration, threads_for(len(rows), workers))
+        population = population_of(chosen, control[rows], pose, calibration, threads_for(len(rows), workers))
         result += _chosen_frames(_course(population), population.records, frames)
     return result
 
 
-_READ = ("position", "velocity", "directions", "motor_torque_n_m")
-"""Fields of a record that are read after every step; each but the last has four numbers."""
-
-
-def _course(population: Population) -> list[Floats]:
+def _course(population: Jumping) -> list[Floats]:
     """Return ``FRAME_COLUMNS`` at every step of each jump, n arrays of shape (steps, columns)."""
-    from mujoco import batch
-
-    from pareto_monoped.jump.callback import controlled
-    from pareto_monoped.jump.controller import DIVERGED, FLYING
-
-    records = population.records
-    seen, steps = np.zeros((len(records), _FIRST_ROOM, 14)), np.zeros(len(records), dtype=np.intp)
-    fields_read = [(slice(4 * k, min(4 * k + 4, 14)), records[name]) for k, name in enumerate(_READ)]
-    status, step = records["status"], 0
-    with controlled():
-        while len(ids := np.flatnonzero(status <= FLYING)):
-            if step == seen.shape[1]:
-                seen = np.concatenate((seen, np.zeros_like(seen)), axis=1)
-            try:
-                population.batch.step(ids, 1)
-            except batch.SimulationError as problem:
-                status[problem.ids] = DIVERGED
-            for columns, values in fields_read:
-                seen[ids, step, columns] = values[ids]
-            steps[ids] += 1
-            step += 1
+    seen, records = population.observed(), population.records
     body, rails_n = _Bodies.of(records), records["rail_friction_n"]
-    return [_of_jump(seen[i, : steps[i]], take(body, np.array([i])), rails_n[i]) for i in range(len(records))]
+    return [_of_jump(one, take(body, np.array([i])), rails_n[i]) for i, one in enumerate(seen)]
 
 
 def _of_jump(seen: Floats, body: "_Bodies", rails_n: float) -> Floats:
-    """Return ``FRAME_COLUMNS`` of a jump from what was read after its steps, ``_READ``, shape (steps, 14)."""
+    """Return ``FRAME_COLUMNS`` of a jump from ``OBSERVED`` after each of its steps, shape (steps, 14)."""
     position, velocity, directions, torque = np.split(seen, (4, 8, 12), axis=1)
     touches = body.clearance_m(position, directions) <= 0.0
     course: Floats = np.column_stack((position, velocity[:, 2:], torque, touches.astype(np.float64)))

@@ -304,17 +304,18 @@ def _step(q: Floats, v: Floats, elastic: bool, jump: Any, work: Any, a: Floats) 
 
 
 @lru_cache(maxsize=1)
-def stepper() -> Callable[[Any, Any, Floats, int], None]:
-    """Return the compiled function that makes jumps: records, grounds, start positions (n, nv), number of torques.
+def stepper() -> Callable[[Any, Any, Floats, int, Floats], None]:
+    """Return the compiled function that makes jumps; it closes over ``origin``.
 
-    It closes over ``origin``.
+    Its arguments are records, grounds, start positions (n, nv), the number of torques, and room for what is observed of
+    each step, ``controller_record.OBSERVED``, shape (n, steps, 14); steps beyond the room are not kept.
     """
     return _stepper(zlib.crc32(f"{origin()}{GROUND.descr}{LEAST_IMPEDANCE}".encode()))
 
 
-def _stepper(sources: int) -> Callable[[Any, Any, Floats, int], None]:
+def _stepper(sources: int) -> Callable[[Any, Any, Floats, int, Floats], None]:
     @compiled
-    def jumps(records: Any, grounds: Any, start: Floats, controls: int) -> None:
+    def jumps(records: Any, grounds: Any, start: Floats, controls: int, seen: Floats) -> None:
         _ = sources
         n = start.shape[1]
         q, v, ctrl, a, force, right = (
@@ -340,6 +341,14 @@ def _stepper(sources: int) -> Callable[[Any, Any, Floats, int], None]:
             _inverse_masses(guided, elastic, jump, (arms, matrix, whole, right, a), inverse)
             while True:
                 control(q, v, ctrl, jump)
+                step = int(jump.steps) - 1
+                if step < seen.shape[1]:
+                    for k in range(4):
+                        seen[i, step, k] = jump.position[k]
+                        seen[i, step, 4 + k] = jump.velocity[k]
+                        seen[i, step, 8 + k] = jump.directions[k]
+                    for k in range(2):
+                        seen[i, step, 12 + k] = jump.motor_torque_n_m[k]
                 if jump.status > FLYING:
                     break
                 angles = jump.directions

@@ -11,7 +11,7 @@ from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, PAPER_CONTROL, REST
 from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
-from pareto_monoped.jump.controller_record import KNEE, RECORD, RECORD_NUMBERS
+from pareto_monoped.jump.controller_record import KNEE, OBSERVED, RECORD, RECORD_NUMBERS
 from pareto_monoped.jump.document import template_mjcf
 from pareto_monoped.jump.end_stops import EndStops, constraints, damping_s_per_m, end_stops
 from pareto_monoped.jump.model import StartPose, start_pose
@@ -25,6 +25,7 @@ Records = NDArray[np.void]
 
 # Steps between two checks for jumps that are over; a jump wastes half of this on average.
 _STEPS_PER_CALL = 16
+_FIRST_ROOM = 512  # steps of an observed jump that there is room for at first; most jumps end sooner
 # Force evaluations per step, and so calls of the controller; integrators not listed use one.
 _STAGES = {"RK4": 4}
 _FULL = "it has more contacts than there is room for"
@@ -80,6 +81,33 @@ class Population:
                     raise SimulationError(
                         "mjcb_control: was replaced while jumps ran; let no other thread set callbacks meanwhile"
                     )
+
+    def observed(self) -> list[Floats]:
+        """Make all jumps to their end, and return ``OBSERVED`` of each, n arrays of shape (steps, 14)."""
+        from mujoco import batch
+
+        from pareto_monoped.jump.callback import controlled
+        from pareto_monoped.jump.controller import DIVERGED, FLYING
+
+        records, status = self.records, self.records["status"]
+        places, end = [], 0
+        for name, size in OBSERVED.items():
+            places.append((records[name], slice(end, end + size)))
+            end += size
+        seen, steps, step = np.zeros((len(records), _FIRST_ROOM, end)), np.zeros(len(records), dtype=np.intp), 0
+        with controlled():
+            while len(ids := np.flatnonzero(status <= FLYING)):
+                if step == seen.shape[1]:
+                    seen = np.concatenate((seen, np.zeros_like(seen)), axis=1)
+                try:
+                    self.batch.step(ids, 1)
+                except batch.SimulationError as problem:
+                    status[problem.ids] = DIVERGED
+                for values, columns in places:
+                    seen[ids, step, columns] = values[ids]
+                steps[ids] += 1
+                step += 1
+        return [one[:count] for one, count in zip(seen, steps, strict=True)]
 
     def complaints(self) -> list[str]:
         """Return what MuJoCo found wrong in each jump, in our words; empty where nothing was."""

@@ -27,7 +27,7 @@ def test_kept_steps_are_few_and_even_and_hold_start_lift_off_and_apex(before, af
 
 @pytest.mark.parametrize("name", ["reference", "reference-3", "stand", "stand-1", "paper"])
 def test_frames_are_those_of_the_whole_trace(name):
-    """Bit by bit, but the floor's force, which follows from the momentum here and from MuJoCo's constraints there."""
+    """Bit by bit by the same engine, but the floor's force, which follows from the momentum here and not there."""
     calibration, maps = load_calibration(name), map_for("VT8020")
     designs = random_designs(6, seed=3)
     robots, control = robot_arrays(designs, maps, calibration.mass), columns(designs, CONTROL)
@@ -35,9 +35,12 @@ def test_frames_are_those_of_the_whole_trace(name):
     for i, jump in enumerate(made):
         trace = trace_of(take(robots, np.array([i])), control[i : i + 1], calibration)
         assert jump.steps[-1] == len(trace["time_s"]) - 1
-        assert jump.height_m == trace["base_z_m"].max()
+        assert jump.height_m == pytest.approx(trace["base_z_m"].max(), rel=1e-9)
         for column in FRAME_COLUMNS[:-1]:
-            np.testing.assert_array_equal(jump.columns[column], trace[column][jump.steps], err_msg=column)
+            rounding = 1e-7 if calibration.simulation.engine == "compiled" else 0.0
+            np.testing.assert_allclose(
+                jump.columns[column], trace[column][jump.steps], rounding, rounding, err_msg=column
+            )
         if name == "paper":
             continue  # its integrator spreads a contact's force over the step
         off = np.abs(jump.columns["contact_z_n"] - trace["contact_z_n"][jump.steps]) / trace["contact_z_n"].max()
