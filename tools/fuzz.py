@@ -39,8 +39,8 @@ from fuzz_checks import Result, findings, snapshot
 
 ROOT = Path(__file__).parents[1]
 STORED = ROOT / "tests" / "storage" / "data"
-PATIENCE_S = 180.0
-"""After which a call counts as one that hangs."""
+PATIENCE_S = 60.0
+"""After which a call counts as one that hangs, on a busy machine, too; the longest calls are told at the end."""
 _STRIKES = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
 DISK_BYTES = 6_000_000
 
@@ -212,8 +212,8 @@ def _redirect(number: int, how: object) -> None:
         os.close(writer)
 
 
-def made(call: Call, folder: Path) -> Result:
-    """Make a call: exit code (None if it hangs), output, messages."""
+def made(call: Call, folder: Path) -> tuple[Result, tuple[float, float]]:
+    """Make a call: exit code (None if it hangs), output, messages; seconds that passed, and of processor time."""
     pipes = os.pipe(), os.pipe()
     # A signal that comes before the command has begun is none of its business.
     signal.pthread_sigmask(signal.SIG_BLOCK, _STRIKES)
@@ -248,14 +248,18 @@ def made(call: Call, folder: Path) -> Result:
                 chooser.unregister(reader)
     for reader, _ in pipes:
         os.close(reader)
-    _, status = os.waitpid(process, 0)
-    code = None if time.monotonic() - began > PATIENCE_S else os.waitstatus_to_exitcode(status)
+    _, status, used = os.wait4(process, 0)
+    passed = time.monotonic() - began
+    code = None if passed > PATIENCE_S else os.waitstatus_to_exitcode(status)
     encoding = call.environment.get("PYTHONIOENCODING") or "utf-8"
-    return code, texts[0].decode(encoding, "replace"), texts[1].decode(encoding, "replace")
+    result = code, texts[0].decode(encoding, "replace"), texts[1].decode(encoding, "replace")
+    return result, (passed, used.ru_utime + used.ru_stime)
 
 
-def one(seed: int, number: int, source: Path, place: Path, given: argparse.Namespace) -> tuple[Call, Result, list[str]]:
-    """Make call ``number`` of a seed in a new folder; returns it, how it ended, and what is wrong with that."""
+def one(
+    seed: int, number: int, source: Path, place: Path, given: argparse.Namespace
+) -> tuple[Call, Result, tuple[float, float], list[str]]:
+    """Make call ``number`` of a seed in a new folder; returns it, how it ended, its time, and what is wrong."""
     from pareto_monoped.cli import cli
 
     dice = random.Random(f"{seed}:{number}")
@@ -282,7 +286,7 @@ def one(seed: int, number: int, source: Path, place: Path, given: argparse.Names
     before = snapshot(place)
     if "read_only" in call.options:
         place.chmod(0o555)
-    result = made(call, place)
+    result, seconds = made(call, place)
     place.chmod(0o755)
     wrong = list(findings(call, place, before, result))
     if wrong and given.keep:
@@ -291,7 +295,7 @@ def one(seed: int, number: int, source: Path, place: Path, given: argparse.Names
         shutil.copytree(place, given.keep / str(number), symlinks=True, ignore=special)
     shutil.rmtree(place)
     (disk / "filler").unlink(missing_ok=True)
-    return call, result, wrong
+    return call, result, seconds, wrong
 
 
 _TELL_EVERY = 500
@@ -313,13 +317,14 @@ def main() -> int:
     print(f"seed {given.seed}", flush=True)
     numbers = range(given.first, given.first + given.calls) if given.only is None else [given.only]
     codes: collections.Counter[tuple[str, int | None]] = collections.Counter()
-    failed = 0
+    failed, longest = 0, list[tuple[float, float, int, list[str]]]()
     with tempfile.TemporaryDirectory(prefix="fuzz-") as temporary, _disk(Path(temporary) / "disk", given.mount):
         root = Path(temporary)
         root.chmod(0o755)
         basis(root / "basis")
         for done, number in enumerate(numbers, 1):
-            call, (code, _, err), wrong = one(given.seed, number, root / "basis", root / "call", given)
+            call, (code, _, err), seconds, wrong = one(given.seed, number, root / "basis", root / "call", given)
+            longest = sorted([*longest, (*seconds, number, call.words)], reverse=True)[:5]
             codes[call.words[0], code] += 1
             if wrong:
                 failed += 1
@@ -330,6 +335,8 @@ def main() -> int:
     for command in sorted({command for command, _ in codes}):
         row = {code: count for (name, code), count in sorted(codes.items(), key=str) if name == command}
         print(f"{command:12} {sum(row.values()):6}  {row}")
+    for passed, busy, number, words in longest:
+        print(f"call {number} took {passed:.1f} s, {busy:.1f} s of them computing: {words}")
     print(f"{sum(codes.values())} calls, {failed} with findings, seed {given.seed}")
     return 1 if failed else 0
 

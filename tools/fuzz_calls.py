@@ -10,12 +10,15 @@ from fuzz_harm import EVIL, STUDIES, TEXTS, harm
 
 ODD_PATHS: tuple[str, ...] = (
     "", ".", "no.db", "no/such/file", "x" * 300, "/proc/self/environ", "/proc/x.db", "/dev/full", "loop", "folder",
-    "pipe", "pipe.toml", "socket.toml",
+    "pipe", "pipe.toml", "socket.toml", "/dev/zero", "/dev/null", "/dev/stdin", "/dev/tty", "/dev",
 )  # fmt: skip
 OUTPUTS: tuple[str, ...] = (
     "new.csv", "new.html", "new.xml", "new.svg", "new.db", "out", "notes.txt", "s.db", "s.db-lock", "study.toml",
 )  # fmt: skip
-OUTPUTS += ("", ".", "no/such/file.csv", "x" * 300, "/proc/x.csv", "/dev/full", "pipe", "folder", f"{EVIL}.csv", "busy")
+OUTPUTS += (
+    "", ".", "no/such/file.csv", "x" * 300, "/proc/x.csv", "/dev/full", "/dev/zero", "pipe", "socket.toml", "folder",
+    f"{EVIL}.csv", "busy",
+)  # fmt: skip
 NUMBERS = (
     "0", "1", "7", "0.5", "-1", "1e400", "nan", "inf", "1_0", "9" * 400, "x", "", "0x10", "1,1", "1,nan", "1e-320",
 )  # fmt: skip
@@ -37,7 +40,7 @@ OUTPUT_NAMES = ("csv_file", "output", "trace", "model", "figure_file", "figures"
 WEIGHTS = {
     "status": 12, "front": 14, "pick": 14, "verify": 8, "repair": 5, "robust": 4, "report": 3, "run": 9, "resume": 8,
     "simulate": 8, "actuators": 7, "table1": 1, "export": 6, "pareto": 4, "nonsense": 2, "sensitivity": 2, "init": 2,
-    "campaign": 6, "trials": 6, "dashboard": 2,
+    "campaign": 2, "trials": 6, "dashboard": 2,
 }  # fmt: skip
 
 
@@ -69,10 +72,8 @@ def call_of(dice: random.Random, commands: click.Group, names: Collection[str] =
         if dice.random() < 0.08:
             call.environment[name] = dice.choice(values)
     for name, odd in OPTIONS.items():
-        if dice.random() < (0.01 if name == "fresh" else 0.04):
+        if dice.random() < (0.02 if name == "fresh" else 0.04):
             call.options[name] = odd(dice)
-    if command == "campaign" or "--processes" in call.words:  # in a fork, handlers at the end come in another order
-        call.options["fresh"] = True
     if command == "campaign" or "--processes" in call.words:  # in a fork, handlers at the end come in another order
         call.options["fresh"] = True
     if command == "dashboard":  # which ends in no other way where it is installed
@@ -120,7 +121,7 @@ def _words(dice: random.Random, command: str, commands: click.Group) -> list[str
     words: list[str] = []
     for parameter in known.params:
         if isinstance(parameter, click.Argument):
-            if dice.random() < 0.97:
+            if dice.random() < 0.97 or command == "pareto":  # without a study it is the whole main job
                 words += [_argument(dice, command)] * (2 if parameter.nargs == -1 and dice.random() < 0.3 else 1)
         elif parameter.name in LIMITED or dice.random() < 0.18 or (parameter.required and dice.random() < 0.95):
             assert isinstance(parameter, click.Option)

@@ -242,10 +242,11 @@ def _within(
     able = (trials["state"] == "feasible").to_numpy() & (trials["trial"] != trial).to_numpy()
     able &= ~trials["trial"].isin(data.ill_conditioned).to_numpy()
     able &= fitting(trials, conditions)
-    rows = trials[able]
-    cost = prices(rows[list(data.study.objectives.names)].to_numpy(dtype=np.float64), of, data.study.objectives)
+    rows = np.flatnonzero(able)
+    values = trials[list(data.study.objectives.names)].to_numpy(dtype=np.float64)[rows]
+    cost = prices(values, of, data.study.objectives)
     order = np.argsort(cost, kind="stable")
-    return rows.iloc[order[cost[order] <= tolerance]]
+    return trials.iloc[rows[order[cost[order] <= tolerance]]]
 
 
 def _changes(values: Floats, of: Floats) -> tuple[float, ...]:

@@ -13,7 +13,7 @@ from pareto_monoped.analysis.at_bounds import bound_lines
 from pareto_monoped.analysis.choices import default_pick
 from pareto_monoped.analysis.sensitivity import importances
 from pareto_monoped.definition.algorithms import WeightedSettings
-from pareto_monoped.definition.variables import Bounds
+from pareto_monoped.definition.variables import MOTOR_KEYS, Bounds
 from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES, PAPER_CASES, Variable
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.jump.end_stops import end_stops
@@ -192,7 +192,8 @@ def _body_masses_kg(data: StudyData, designs: pd.DataFrame) -> NDArray[np.float6
 
 def _floor_j(data: StudyData) -> list[float]:
     """Return the least energy of every design that jumped, at ``FLOOR_HEIGHTS_M``, rounded down."""
-    jumped = data.trials[data.trials["height_m"].notna()]
+    needed = data.trials[[name for name in (*NAMES, *MOTOR_KEYS) if name in data.trials]]
+    jumped = needed[data.trials["height_m"].notna()]
     least = np.full(len(FLOOR_HEIGHTS_M), np.inf)
     for kit, rows in data.kit_rows(jumped):
         designs = jumped.iloc[rows][list(NAMES)].to_numpy(dtype=np.float64)

@@ -11,7 +11,7 @@ from pareto_monoped.storage.connection import Connection
 from pareto_monoped.storage.kept_front import KeptFront, checked_front, foreign_count
 from pareto_monoped.storage.meta import StudyMeta
 from pareto_monoped.storage.place import StudyPlace, storage_of
-from pareto_monoped.storage.reader import read_study, trial_frame, with_agility, with_motors
+from pareto_monoped.storage.reader import read_study, trial_blocks, trial_frame, with_agility, with_motors
 from pareto_monoped.storage.seals import Parts, content_hash, has_seals
 
 
@@ -78,7 +78,7 @@ def _kept(connection: Connection, db: StudyPlace) -> StudyFront:
     study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
     kept = KeptFront(study.objectives)
     kept.load(connection)
-    trials = trial_frame(checked.columns, checked.trials, db)
+    trials = trial_frame(trial_blocks(checked.columns, checked.trials, db))
     trials = trials[trials["trial"].isin(kept.numbers)]
     named = with_agility(with_motors(trials, study, meta, db))
     front = named.sort_values(study.objectives.names[0], kind="stable", ignore_index=True)

@@ -5,7 +5,7 @@ from those that databases of earlier versions have.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING, Any
@@ -24,11 +24,13 @@ from pareto_monoped.pareto.pick import front_within
 from pareto_monoped.pareto.selectors import Condition
 from pareto_monoped.storage.base import undamaged
 from pareto_monoped.storage.columns import COLUMNS, LATER, REQUIRED
+from pareto_monoped.storage.connection import Connection
 from pareto_monoped.storage.meta import StudyMeta, meta_of_rows, motor_keys
 from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.seals import (
     ROWS,
     Parts,
+    Seals,
     content_hash,
     damaged,
     has_seals,
@@ -47,14 +49,16 @@ if TYPE_CHECKING:
 _DTYPES = {column.name: column.dtype for column in COLUMNS}
 
 
-_BLOCK = 20_000
-"""Rows that are values of Python at once, eight times as large as in the frame: 40 MB. Our own choice."""
+_BLOCK = 4_000
+"""Rows that are values of Python at once, eight times as large as in the frame: 10 MB. Our own choice."""
+Block = dict[str, Any]
+"""Trials that follow one another: column -> values of its type."""
 
 
-def trial_frame(names: list[str], rows: Iterable[tuple[Any, ...]], db: StudyPlace) -> pd.DataFrame:
-    """Return trials as a data frame from column names and rows, which are read block by block; refuse damaged ones."""
+def trial_frame(blocks: Iterable[Block]) -> pd.DataFrame:
+    """Return the trials of all blocks as a data frame."""
     parts: dict[str, list[Any]] = {}
-    for block in trial_blocks(names, rows, db):
+    for block in blocks:
         for name, values in block.items():
             parts.setdefault(name, []).append(values)
     # Column by column, and not copied into the frame: otherwise a large study would be in memory twice.
@@ -62,20 +66,20 @@ def trial_frame(names: list[str], rows: Iterable[tuple[Any, ...]], db: StudyPlac
     return pd.DataFrame(columns, copy=False)
 
 
-def trial_blocks(names: list[str], rows: Iterable[tuple[Any, ...]], db: StudyPlace) -> Iterator[dict[str, Any]]:
-    """Yield trials block by block, at least one, each as column -> values of its type; refuse damaged ones."""
-    left, texts = iter(rows), dict[str, str]()
+def trial_blocks(names: list[str], rows: Iterable[tuple[Any, ...]], db: StudyPlace) -> Iterator[Block]:
+    """Yield trials block by block, at least one; refuse damaged ones."""
+    left = iter(rows)
     try:
-        yield _typed_columns(names, list(islice(left, _BLOCK)), texts)
+        yield _typed_columns(names, list(islice(left, _BLOCK)))
         while block := list(islice(left, _BLOCK)):
-            yield _typed_columns(names, block, texts)
+            yield _typed_columns(names, block)
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise DatabaseError(
             f"study database {str(db)!r}: its trials are damaged ({type(error).__name__}: {error}); restore a copy"
         ) from None
 
 
-def _typed_columns(names: list[str], rows: list[tuple[Any, ...]], texts: dict[str, str]) -> dict[str, Any]:
+def _typed_columns(names: list[str], rows: list[tuple[Any, ...]]) -> Block:
     columns: dict[str, tuple[Any, ...]] = dict.fromkeys(names, ())
     if rows:
         columns = dict(zip(names, zip(*rows, strict=True), strict=True))
@@ -84,12 +88,13 @@ def _typed_columns(names: list[str], rows: list[tuple[Any, ...]], texts: dict[st
     known = [*REQUIRED, *(column.name for column in COLUMNS if column.name not in REQUIRED)]
     ordered = [*known, *(name for name in columns if name not in known)]
     # A column that only a later version knows is read as a number, as every measure is.
-    return {name: _typed(columns[name], _DTYPES.get(name, "float64"), texts) for name in ordered}
+    return {name: _typed(columns[name], _DTYPES.get(name, "float64")) for name in ordered}
 
 
-def _typed(values: tuple[Any, ...], dtype: str, texts: dict[str, str]) -> Any:
+def _typed(values: tuple[Any, ...], dtype: str) -> Any:
     if dtype == "str":
-        # The same text is kept once, not once per row.
+        # The same text is kept once per block, not once per row.
+        texts: dict[str, str] = {}
         shared = [texts.setdefault(word, word) for word in ("" if value is None else str(value) for value in values)]
         return pd.array(shared, dtype="str")
     if dtype == "int64":
@@ -245,6 +250,8 @@ class StudyData:
 
     def kit_numbers(self, trials: pd.DataFrame) -> NDArray[np.intp]:
         """Return the index in ``kits`` of each of n trials, shape (n,)."""
+        if len(self.kits) == 1:
+            return np.zeros(len(trials), dtype=np.intp)
         hip, knee = ("motor", "motor") if self.study.motor is not None else ("hip_motor", "knee_motor")
         known = {(kit.hip.motor.name, kit.knee.motor.name): k for k, kit in enumerate(self.kits)}
         return np.array([known[pair] for pair in zip(trials[hip], trials[knee], strict=True)], dtype=np.intp)
@@ -287,8 +294,15 @@ class StudyData:
     @property
     def sound(self) -> pd.DataFrame:
         """The feasible trials that have not failed their audit: all that may be chosen."""
-        feasible = (self.trials["state"] == "feasible").to_numpy()
-        return self.trials[feasible & ~self.trials["trial"].isin(self.ill_conditioned).to_numpy()]
+        return self.trials[self._able(include_ill_conditioned=False)]
+
+    def _able(self, include_ill_conditioned: bool) -> NDArray[np.bool_]:
+        """Return which trials may be on a front, shape (n,)."""
+        feasible: NDArray[np.bool_] = (self.trials["state"] == "feasible").to_numpy(dtype=bool)
+        if include_ill_conditioned:
+            return feasible
+        failed: NDArray[np.bool_] = self.trials["trial"].isin(self.ill_conditioned).to_numpy(dtype=bool)
+        return feasible & ~failed
 
     def front(
         self,
@@ -302,10 +316,41 @@ class StudyData:
         conditions do not count, and neither do ill-conditioned ones, which failed their audit: trials that they
         dominate may enter.
         """
-        rows = self.trials[self.trials["state"] == "feasible"] if include_ill_conditioned else self.sound
         chosen = objectives or self.study.objectives
-        found = rows[front_within(rows, conditions, chosen)]
+        found = self.trials[front_within(self.trials, conditions, chosen, self._able(include_ill_conditioned))]
         return found.sort_values(chosen.names[0], kind="stable", ignore_index=True)
+
+
+@dataclass(slots=True)
+class _Check:
+    """Checks trials while they are read, so that a million of them need not be in memory twice."""
+
+    seals: Seals | None  #: the running hash, if the study has one
+    count: int = 0  #: how many trials have been read
+    #: what is wrong with numbers, and which trials do not match their hash
+    numbering: list[str] = field(default_factory=list)
+    unlike: list[str] = field(default_factory=list)
+
+    @property
+    def findings(self) -> list[str]:
+        """What is wrong, each line once."""
+        return list(dict.fromkeys((*self.numbering, *self.unlike)))
+
+    def passing(self, blocks: Iterable[Block]) -> Iterator[Block]:
+        """Yield the blocks, each after it was checked."""
+        for values in blocks:
+            self.numbering = self.numbering or numbering_findings(values["trial"], self.count)
+            self.count += len(values["trial"])
+            if self.seals is not None:
+                self.unlike += self.seals.trial_findings(values, values["trial"])
+            yield values
+        if self.seals is not None:
+            self.numbering += missing_findings(self.count, self.seals.trials)
+
+
+def _stored_blocks(connection: Connection, db: StudyPlace) -> Iterator[Block]:
+    rows = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
+    return trial_blocks(connection.columns("monoped_trials"), rows, db)
 
 
 def read_trials(db: StudyPlace) -> Iterator[pd.DataFrame]:
@@ -323,19 +368,15 @@ def read_trials(db: StudyPlace) -> Iterator[pd.DataFrame]:
             raise damaged(db, findings)
         meta = meta_of_rows(rows, db)
         study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
-        cursor, count = connection.execute("SELECT * FROM monoped_trials ORDER BY trial"), 0
-        for values in trial_blocks(connection.columns("monoped_trials"), cursor, db):
-            findings = numbering_findings(values["trial"], count)
-            count += len(values["trial"])
-            if seals is not None:
-                findings += seals.trial_findings(values, values["trial"])
-            if findings:
-                raise damaged(db, findings)
+        check = _Check(seals)
+        for values in check.passing(_stored_blocks(connection, db)):
+            if check.findings:
+                raise damaged(db, check.findings)
             trials = with_agility(with_motors(pd.DataFrame(values, copy=False), study, meta, db))
             trials.attrs["sealed"] = seals is not None
             yield trials
-        if seals is not None and (findings := missing_findings(count, seals.trials)):
-            raise damaged(db, findings)
+        if check.findings:
+            raise damaged(db, check.findings)
 
 
 def read_study(db: StudyPlace) -> StudyData:
@@ -349,10 +390,10 @@ def read_study(db: StudyPlace) -> StudyData:
             sealed = has_seals(connection)
             tables = [table for table in ROWS if sealed or table != "front"]
             rows = {table: connection.execute(ROWS[table]).fetchall() for table in tables}
-            cursor = connection.execute("SELECT * FROM monoped_trials ORDER BY trial")
             columns = connection.columns("monoped_trials")
-            trials = trial_frame(columns, cursor, db)
             seals = read_seals(connection, db) if sealed else None
+            check = _Check(seals)
+            trials = trial_frame(check.passing(_stored_blocks(connection, db)))
         meta = meta_of_rows(rows["meta"], db)
         study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
         _, generation, evaluations, state = rows["checkpoint"][0]
@@ -365,15 +406,12 @@ def read_study(db: StudyPlace) -> StudyData:
         if not np.isfinite(history.to_numpy(dtype=np.float64)).all():
             raise ValueError("a hypervolume or time of its history is not finite")
         named = with_agility(with_motors(trials, study, meta, db))
-        values = {name: trials[name].to_numpy() for name in trials}
-        findings = numbering_findings(values["trial"])
+        findings = check.findings
         if seals is not None:
-            findings += missing_findings(len(trials), seals.trials)
-            findings += seals.trial_findings(values, values["trial"])
             findings += [line for table in rows for line in seals.row_findings(table, rows[table])]
         if findings:
             raise damaged(db, findings)
-        parts: Parts = [(0, tuple(columns), "".join(trial_digests(columns, values)))] if seals is None else seals.parts
+        parts: Parts = [(0, tuple(columns), "".join(trial_digests(columns, trials)))] if seals is None else seals.parts
         return StudyData(
             db=db,
             study=study,

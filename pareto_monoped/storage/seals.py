@@ -61,8 +61,6 @@ UNSEALED = (
 """Note on a study of version 0.2.0 or earlier."""
 
 _DIGITS = 16
-_BLOCK = 20_000
-"""Trials that are checked at once, which takes as much memory as they do. Our own choice."""
 _KNOWN = frozenset(column.name for column in COLUMNS)
 _TEXTS = frozenset(column.name for column in COLUMNS if column.dtype == "str")
 _BEFORE_ALL = ""
@@ -154,20 +152,21 @@ class Seals:
         for first, names, digests in self.parts:
             begin, end = np.searchsorted(places, (first, first + len(digests) // _DIGITS))
             known[begin:end] = True
-            if begin < end and (lost := [name for name in names if name not in values]):
+            if begin == end:
+                continue
+            if lost := [name for name in names if name not in values]:
                 return [f"its trials lack the column {lost[0]!r}"]
-            for chosen in (slice(k, min(k + _BLOCK, end)) for k in range(begin, end, _BLOCK)):
-                numbers_there = places[chosen]
-                part = {name: np.asarray(column[chosen]) for name, column in values.items()}
-                found = trial_digests(names, part)
-                wrong = {
-                    int(number)
-                    for number, digest in zip(numbers_there, found, strict=True)
-                    if digests[_DIGITS * (number - first) : _DIGITS * (number - first + 1)] != digest
-                }
-                without = _KNOWN & set(values) - set(names)
-                wrong.update(numbers_there[_not_default(part, without, len(numbers_there))].tolist())
-                findings += [f"trial {number} does not match its hash" for number in sorted(wrong)]
+            numbers_there = places[begin:end]
+            part = {name: np.asarray(column[begin:end]) for name, column in values.items()}
+            found = trial_digests(names, part)
+            wrong = {
+                int(number)
+                for number, digest in zip(numbers_there, found, strict=True)
+                if digests[_DIGITS * (number - first) : _DIGITS * (number - first + 1)] != digest
+            }
+            without = _KNOWN & set(values) - set(names)
+            wrong.update(numbers_there[_not_default(part, without, len(numbers_there))].tolist())
+            findings += [f"trial {number} does not match its hash" for number in sorted(wrong)]
         return findings + [f"trial {number} has no hash" for number in places[~known]]
 
     def row_findings(self, table: str, rows: Iterable[Sequence[Any]], *, whole: bool = True) -> list[str]:

@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 
 from pareto_monoped.errors import DatabaseError
-from pareto_monoped.storage import reader, seals
+from pareto_monoped.storage import reader
 from pareto_monoped.storage.reader import read_study
 from tests.study.support import made_database
 
@@ -14,7 +14,6 @@ def test_trials_are_the_same_however_many_are_read_at_once(tmp_path, monkeypatch
     made_database(tmp_path / "s.db")
     whole = read_study(tmp_path / "s.db").trials
     monkeypatch.setattr(reader, "_BLOCK", 2)
-    monkeypatch.setattr(seals, "_BLOCK", 2)
     blocks = read_study(tmp_path / "s.db").trials
     assert len(blocks) == 6
     pd.testing.assert_frame_equal(blocks, whole)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.errors import DatabaseError, InputError
-from pareto_monoped.storage import reader, seals
+from pareto_monoped.storage import reader
 from pareto_monoped.storage.base import FORMAT
 from pareto_monoped.storage.front_reader import read_front
 from pareto_monoped.storage.reader import read_study
@@ -111,7 +111,6 @@ def test_every_value_is_guarded(path, tmp_path):
 @pytest.mark.parametrize("block", [20_000, 2])
 def test_the_row_is_named(path, statement, words, block, monkeypatch):
     monkeypatch.setattr(reader, "_BLOCK", block)
-    monkeypatch.setattr(seals, "_BLOCK", block)
     change(path, statement)
     with pytest.raises(DatabaseError, match="is damaged") as caught:
         read_study(path)

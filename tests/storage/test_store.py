@@ -37,6 +37,27 @@ def test_a_power_cut_keeps_what_was_acknowledged(tmp_path):
         assert store._connection.execute("PRAGMA journal_mode").fetchone() == ("wal",)
 
 
+def test_parameters_are_named_once_per_trial_and_found_by_their_trial(tmp_path):
+    """Optuna's own tables have each name in an index, too, a tenth of a study; both are the same to Optuna."""
+    path, theirs = tmp_path / "s.db", tmp_path / "theirs.db"
+    study = made_study()
+    many = made_evaluations(np.full(60, 0.7), np.full(60, 2.0))
+    made_database(path, [made_generation(study, 0, 0, many, state={})], study)
+    assert 60 <= path.read_bytes().count(b"shank_length_m") < 90  # settings and columns have it, too
+    optuna.storages.RDBStorage(f"sqlite:///{theirs}").engine.dispose()
+    with sqlite3.connect(theirs) as connection:
+        connection.execute("ATTACH ? AS ours", (str(path),))
+        for table in ("studies", "study_directions", "trials", "trial_params", "trial_values", "trial_user_attributes"):
+            connection.execute(f"INSERT INTO {table} SELECT * FROM ours.{table}")
+        connection.execute("INSERT INTO trial_system_attributes SELECT * FROM ours.trial_system_attributes")
+    connection.close()
+    assert load(path).trials == load(theirs).trials
+    with sqlite3.connect(path) as connection:
+        plan = connection.execute("EXPLAIN QUERY PLAN SELECT * FROM trial_params WHERE trial_id IN (3, 4)").fetchall()
+    connection.close()
+    assert "USING INDEX" in plan[0][3]
+
+
 def test_odd_file_names_are_file_names(tmp_path):
     path = tmp_path / "a b?mode=ro&x=%41#.db"
     made_database(path)
