@@ -196,9 +196,9 @@ def _floor_j(data: StudyData) -> list[float]:
     jumped = needed[data.trials["height_m"].notna()]
     least = np.full(len(FLOOR_HEIGHTS_M), np.inf)
     for kit, rows in data.kit_rows(jumped):
-        designs = jumped.iloc[rows][list(NAMES)].to_numpy(dtype=np.float64)
-        for some in np.array_split(designs, len(designs) // MOST_ROWS + 1):
-            robots = robot_arrays(some, kit, data.calibration.mass)
+        for some in np.array_split(rows, len(rows) // MOST_ROWS + 1):
+            designs = jumped.iloc[some][list(NAMES)].to_numpy(dtype=np.float64)
+            robots = robot_arrays(designs, kit, data.calibration.mass)
             least = np.minimum(least, least_of_all_j(robots, data.calibration, np.array(FLOOR_HEIGHTS_M)))
     return (np.floor(1e4 * least) / 1e4).tolist() if np.isfinite(least).all() else []
 

@@ -55,14 +55,26 @@ Block = dict[str, Any]
 """Trials that follow one another: column -> values of its type."""
 
 
-def trial_frame(blocks: Iterable[Block]) -> pd.DataFrame:
-    """Return the trials of all blocks as a data frame."""
-    parts: dict[str, list[Any]] = {}
+def trial_frame(blocks: Iterable[Block], expected: int = 0) -> pd.DataFrame:
+    """Return the trials of all blocks as a data frame; it takes least memory if as many come as are ``expected``."""
+    # Columns are filled in place: memory of many small pieces stays with the process after they have been joined.
+    columns: dict[str, Any] = {}
+    count = 0
     for block in blocks:
+        end = count + len(block["trial"])
         for name, values in block.items():
-            parts.setdefault(name, []).append(values)
-    # Column by column, and not copied into the frame: otherwise a large study would be in memory twice.
-    columns = {name: _joined(parts.pop(name)) for name in list(parts)}
+            if not isinstance(values, np.ndarray):
+                columns.setdefault(name, []).append(pd.Series(values))
+                continue
+            if name not in columns or len(columns[name]) < end:
+                larger = np.empty(max(end, expected, 2 * count), dtype=values.dtype)
+                larger[:count] = columns.get(name, larger)[:count]
+                columns[name] = larger
+            columns[name][count:end] = values
+        count = end
+    for name, values in columns.items():
+        texts = isinstance(values, list)
+        columns[name] = pd.concat(values, ignore_index=True).array if texts else values[:count]
     return pd.DataFrame(columns, copy=False)
 
 
@@ -100,13 +112,6 @@ def _typed(values: tuple[Any, ...], dtype: str) -> Any:
     if dtype == "int64":
         return np.array(values, dtype=np.int64)
     return np.array([np.nan if value is None else value for value in values], dtype=np.float64)
-
-
-def _joined(parts: list[Any]) -> Any:
-    """Return the values of all parts."""
-    if isinstance(parts[0], np.ndarray):
-        return np.concatenate(parts)
-    return pd.concat([pd.Series(part) for part in parts], ignore_index=True).array
 
 
 def with_motors(trials: pd.DataFrame, study: Study, meta: StudyMeta, db: StudyPlace) -> pd.DataFrame:
@@ -393,7 +398,7 @@ def read_study(db: StudyPlace) -> StudyData:
             columns = connection.columns("monoped_trials")
             seals = read_seals(connection, db) if sealed else None
             check = _Check(seals)
-            trials = trial_frame(check.passing(_stored_blocks(connection, db)))
+            trials = trial_frame(check.passing(_stored_blocks(connection, db)), 0 if seals is None else seals.trials)
         meta = meta_of_rows(rows["meta"], db)
         study = study_from_dict(meta.study, source=f"study database {str(db)!r}")
         _, generation, evaluations, state = rows["checkpoint"][0]

@@ -4,6 +4,8 @@ import os
 import subprocess
 import sys
 
+import pytest
+
 from tests.tools.conftest import TOOLS
 
 CALLS, SEED = 15, 1
@@ -25,3 +27,9 @@ def test_no_call_ends_in_a_traceback_or_damage():
     assert code == 0, said
     assert said.startswith(f"seed {SEED}\n")
     assert f"{CALLS} calls, 0 with findings, seed {SEED}" in said
+
+
+@pytest.mark.long
+def test_no_call_of_many_ends_in_a_traceback_or_damage():
+    code, said = fuzzed("--calls", "1000", "--seed", "29")
+    assert code == 0, said
