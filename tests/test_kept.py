@@ -19,7 +19,7 @@ FIRST = {"a": np.array([1.0, np.nan, -0.0]), "b": np.arange(6).reshape(2, 3)}
 PROGRAM = """
 import hashlib, sys
 import numpy as np
-from pareto_monoped.actuator.ratiomap import joint_maps
+from pareto_monoped.actuator.ratiomap import JointMaps
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import LOWER, UPPER
 from pareto_monoped.robot.population import robot_arrays
@@ -28,13 +28,16 @@ from pareto_monoped.strength.factors import LOAD_NAMES, strength_factors
 
 if sys.argv[1] == "second":
     factors._blocks = None  # what is read is not computed
-maps = joint_maps(map_for("MAD_M6C12"))
 designs = np.random.default_rng(1).uniform(LOWER, UPPER, size=(20, len(LOWER)))
-robots = robot_arrays(designs, maps)
 loads = dict.fromkeys(LOAD_NAMES, np.linspace(1.0, 500.0, 20))
-numbers = [getattr(robots, name) for name in robots.__dataclass_fields__]
-numbers = [each for each in numbers if isinstance(each, np.ndarray)] + [strength_factors(designs, maps, loads)]
-print(hashlib.sha256(b"".join(np.ascontiguousarray(each).tobytes() for each in numbers)).hexdigest())
+# The same map at either joint, in other legs, and under other rules.
+for hip, knee, rules in (("M", "M", "iso6336"), ("M", "M", "paper"), ("M", "N", "paper"), ("N", "M", "paper")):
+    maps = [map_for({"M": "MAD_M6C12", "N": "MN8014"}[name], rules) for name in (hip, knee)]
+    maps = JointMaps(hip=maps[0], knee=maps[1])
+    robots = robot_arrays(designs, maps)
+    numbers = [getattr(robots, name) for name in robots.__dataclass_fields__]
+    numbers = [each for each in numbers if isinstance(each, np.ndarray)] + [strength_factors(designs, maps, loads)]
+    print(hashlib.sha256(b"".join(np.ascontiguousarray(each).tobytes() for each in numbers)).hexdigest())
 """
 
 
