@@ -279,6 +279,6 @@ def _stamp() -> str:
 
     digest = hashlib.sha256(repr((sys.version, np.__version__, platform.machine(), platform.node())).encode())
     for path in sorted(Path(__file__).parent.rglob("*")):
-        if path.suffix in (".py", ".toml"):
+        if path.suffix in (".py", ".toml") and path.is_file():  # an editor's lock is a link to nothing
             digest.update(path.read_bytes())
     return digest.hexdigest()

@@ -116,6 +116,7 @@ def test_every_file_of_code_and_data_counts(tmp_path, monkeypatch):
     for name in ("one.py", "deep/two.toml"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("1")
+    (tmp_path / ".#lock.py").symlink_to("nothing")
     monkeypatch.setattr(files, "__file__", str(tmp_path / "files.py"))
     stamps = [before]
     for name in ("one.py", "deep/two.toml"):

@@ -22,7 +22,7 @@ FUNCTIONS = [name for name in pm.__all__ if callable(getattr(pm, name))]
 def folder(tmp_path_factory):
     """A folder with a small study, which the examples read."""
     folder = tmp_path_factory.mktemp("examples")
-    pm.run(pm.Study.define(name="light", evaluations=200, motor="U8"), folder / "light.db")
+    pm.run(pm.Study.define(name="light", evaluations=200, motor="U8", audit=False), folder / "light.db")
     return folder
 
 
