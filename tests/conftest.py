@@ -62,7 +62,9 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ.setdefault("PYTEST_DEBUG_TEMPROOT", str(memory))
     if "PYTEST_XDIST_WORKER" not in os.environ:
         # Tables that all processes of this run need are computed once, and none that an earlier run has left is read.
-        config.stash[KEPT] = tempfile.TemporaryDirectory(prefix="kept", dir=os.environ.get("PYTEST_DEBUG_TEMPROOT"))
+        config.stash[KEPT] = tempfile.TemporaryDirectory(
+            prefix="pareto_monoped_", dir=os.environ.get("PYTEST_DEBUG_TEMPROOT")
+        )
         os.environ["PARETO_MONOPED_CACHE"] = config.stash[KEPT].name
 
 
