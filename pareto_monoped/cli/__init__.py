@@ -4,7 +4,7 @@ Numbers go to stdout, messages and progress to stderr. Bad input ends with one l
 running with 1, an interrupt with 130.
 
 Order of imports, lowest first: actuator_sheets, terminal; options, process, watching; actuators, campaign, jumps,
-pareto, selection, stored, studies; exports, fronts, robustness.
+machines, pareto, selection, stored, studies; exports, fronts, robustness.
 """
 
 import difflib
@@ -17,6 +17,7 @@ from pareto_monoped import __version__
 #: Command -> module of this package that defines it, in the order of use.
 _COMMANDS = {
     "pareto": "pareto", "init": "pareto", "actuators": "actuators", "simulate": "jumps", "table1": "jumps",
+    "replay": "machines",
     "run": "studies", "resume": "studies", "status": "studies", "campaign": "campaign", "verify": "stored",
     "repair": "stored", "trials": "stored", "front": "fronts", "pick": "fronts", "robust": "robustness",
     "sensitivity": "robustness", "export": "exports", "report": "stored", "dashboard": "stored",

@@ -11,7 +11,7 @@ from typing import Any
 from pareto_monoped.compute.compiled import compiled
 from pareto_monoped.design import GRAVITY_M_PER_S2, Floats
 from pareto_monoped.jump.controller_record import HIP, KNEE, TOUCH_M
-from pareto_monoped.jump.virtual_leg import held_pose, release, virtual_leg
+from pareto_monoped.jump.virtual_leg import held_pose, push, release, virtual_leg
 
 RUNNING, FLYING, APEX, NO_LIFT_OFF, SANK, DIVERGED, TIMEOUT = range(7)
 """``status``; a jump goes on through ``FLYING``."""
@@ -89,7 +89,7 @@ def _end(q: Floats, v: Floats, jump: Any) -> None:
     z = places(v.shape[0])[0]
     if jump.off_floor > 0.0 and v[z] <= 0.0:
         jump.status = APEX
-    elif q[z] < SANK_M:
+    elif q[z] < (SANK_M if jump.until_m == 0.0 else jump.foot_radius_m):
         jump.status = SANK
     elif jump.steps > jump.step_limit:
         jump.status = TIMEOUT if jump.off_floor > 0.0 else NO_LIFT_OFF
@@ -153,6 +153,9 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
         for k in range(4):
             jump.lift_off_positions[after, k] = jump.position[k]
     gate = _gate(read_clearance, touching, jump) if tick else 0.0
+    if tick and jump.until_m > 0.0 and (jump.pushed_s > 0.0 or -foot[1] >= jump.until_m):
+        jump.pushed_s = jump.pushed_s or (jump.steps - 1.0) * jump.timestep_s
+        gate = 0.0
     _end(q, v, jump)
     if jump.status != RUNNING:
         return
@@ -167,7 +170,10 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
             jump.quiet_periods += 1
         wanted, share = (0.0, 0.0), (gate, gate)
         if gate > 0.0:
-            wanted = virtual_leg(foot, shank, speed, jump)
+            if jump.until_m > 0.0:
+                wanted = push((hip, knee), foot, shank, speed, jump)
+            else:
+                wanted = virtual_leg(foot, shank, speed, jump)
             share = (gate, gate * release(knee, jump))
         elif jump.flight_stiffness_n_m_per_rad > 0.0:
             wanted, share = held_pose((hip, knee), speed, jump), (1.0, 1.0)

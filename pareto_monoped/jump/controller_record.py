@@ -48,6 +48,11 @@ RECORD = np.dtype(
         ("flight_stiffness_n_m_per_rad", _ONE),
         ("flight_damping_n_m_s_per_rad", _ONE),
         ("start_rad", _BOTH),
+        # A push that is replayed instead of the virtual leg (``virtual_leg.push``), if ``until_m`` is above 0: until
+        # the foot is that far below the hip. Pairs are forward, down of the foot, or hip, knee.
+        *_each(_ONE, "until_m", "at_target", "joint_n_m_per_rad", "joint_n_m_s_per_rad"),
+        *_each(_BOTH, "force_n", "force_n_per_m", "force_n_s_per_m", "foot_m", "foot_m_per_s"),
+        *_each(_BOTH, "target_rad", "target_rad_per_s", "force_limit_n_m", "added_n_m"),
         # What the loads are computed from, see ``_loads``.
         ("body_mass_kg", (np.float64, (3,))),
         *_each(_ONE, "stand_mass_kg", "rail_friction_n"),  # what the base lifts besides the robot; of all carriages
@@ -69,6 +74,7 @@ RECORD = np.dtype(
         ("steps", _ONE),
         ("height_m", _ONE),  # highest so far
         ("clearance_m", _ONE),
+        ("pushed_s", _ONE),  # when a replayed push ended; 0 before
         ("lift_off_step", _ONE),  # last step with contact
         ("lift_off_positions", (np.float64, (2, 4))),  # x, z, hip, knee at that step and at the next
         ("stood", _ONE),  # the foot has touched the floor

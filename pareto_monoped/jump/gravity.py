@@ -50,18 +50,23 @@ def rise_m(robots: RobotArrays, records: NDArray[np.void]) -> Floats:
     its base. Its links then still swing, so its centre of mass still rises or falls already. As it flies on a parabola,
     its apex is v^2 / (2 g) above its height at the end, with its speed v there, whichever way it moves.
     """
+    levers = _levers_m(robots, records["stand_mass_kg"])
+    end, (_, rate, hip_rate, knee_rate) = records["position"], records["velocity"].T
+    a, b, c, d = levers
+    turning = np.stack([b * hip_rate, -a * hip_rate, d * (hip_rate + knee_rate), -c * (hip_rate + knee_rate)])
+    speed = rate + _below_m(turning, end[:, 2], end[:, 2] + end[:, 3])
+    return np.asarray(_height_m(levers, end) + np.square(speed) / (2.0 * GRAVITY_M_PER_S2) - left_m(robots, records)[0])
+
+
+def left_m(robots: RobotArrays, records: NDArray[np.void]) -> tuple[Floats, Floats]:
+    """Return heights and vertical speeds of the centres of mass at lift-off, both of shape (n,)."""
     levers, zero = _levers_m(robots, records["stand_mass_kg"]), np.zeros(len(robots))
     to_foot = np.stack([-robots.thigh_length_m, zero, -robots.shank_length_m, zero])
     before, after = records["lift_off_positions"][:, 0], records["lift_off_positions"][:, 1]
     below, above = (_height_m(to_foot, at) - robots.foot_radius_m for at in (before, after))
     share = np.clip(below / np.minimum(below - above, -1e-12), 0.0, 1.0)
-    left = (1.0 - share) * _height_m(levers, before) + share * _height_m(levers, after)
-
-    end, (_, rate, hip_rate, knee_rate) = records["position"], records["velocity"].T
-    a, b, c, d = levers
-    turning = np.stack([b * hip_rate, -a * hip_rate, d * (hip_rate + knee_rate), -c * (hip_rate + knee_rate)])
-    speed = rate + _below_m(turning, end[:, 2], end[:, 2] + end[:, 3])
-    return np.asarray(_height_m(levers, end) + np.square(speed) / (2.0 * GRAVITY_M_PER_S2) - left)
+    first, second = _height_m(levers, before), _height_m(levers, after)
+    return (1.0 - share) * first + share * second, (second - first) / records["timestep_s"]
 
 
 def standing_height_m(robots: RobotArrays, calibration: Calibration) -> Floats:
