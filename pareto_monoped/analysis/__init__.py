@@ -1,6 +1,17 @@
 """What is computed from stored studies: alternatives, robustness, sensitivity, limits, verification.
 
-Order of imports, lowest first: alternatives, at_bounds, rail_legs, robustness, verify; remarks, sensitivity; choices.
+Order of imports, lowest first: alternatives, at_bounds, compare, rail_legs, robustness, verify; remarks,
+sensitivity; choices.
 """
 
-__all__ = ["alternatives", "at_bounds", "choices", "rail_legs", "remarks", "robustness", "sensitivity", "verify"]
+__all__ = [
+    "alternatives",
+    "at_bounds",
+    "choices",
+    "compare",
+    "rail_legs",
+    "remarks",
+    "robustness",
+    "sensitivity",
+    "verify",
+]

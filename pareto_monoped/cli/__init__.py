@@ -17,7 +17,7 @@ from pareto_monoped import __version__
 #: Command -> module of this package that defines it, in the order of use.
 _COMMANDS = {
     "pareto": "pareto", "init": "pareto", "actuators": "actuators", "simulate": "jumps", "table1": "jumps",
-    "replay": "machines",
+    "replay": "machines", "compare": "machines",
     "run": "studies", "resume": "studies", "status": "studies", "campaign": "campaign", "verify": "stored",
     "repair": "stored", "trials": "stored", "front": "fronts", "pick": "fronts", "robust": "robustness",
     "sensitivity": "robustness", "export": "exports", "report": "stored", "dashboard": "stored",

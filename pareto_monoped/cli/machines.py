@@ -1,4 +1,4 @@
-"""Commands on machines that exist: ``replay``, a published leg on its rail."""
+"""Commands on machines that exist: ``replay``, a published leg on its rail, and ``compare``, a log of a real jump."""
 
 import json
 import math
@@ -10,10 +10,13 @@ from typing import TYPE_CHECKING
 import click
 
 from pareto_monoped.cli import options
-from pareto_monoped.cli.terminal import echo, name, wrapped
+from pareto_monoped.cli.terminal import echo, name, note, wrapped
 
 if TYPE_CHECKING:
+    from pareto_monoped.actuator.ratiomap import JointMaps
     from pareto_monoped.analysis.rail_legs import Predicted
+    from pareto_monoped.design import Design
+    from pareto_monoped.jump.calibration import Calibration
     from pareto_monoped.jump.rail_leg import RailLeg
 
 _UNITS = {"push_s": "push, s", "take_off_m_per_s": "take-off, m/s", "apex_m": "apex of the hip, m"}
@@ -99,3 +102,54 @@ def _print(leg: "RailLeg", given: "list[Predicted]", after: "list[Predicted] | N
         for text, one in (("as given", given), ("fitted", after)):
             if one is not None and one[k].failed:
                 echo(f"  {text}: {100.0 * one[k].failed:.0f} % of the samples do not lift off")
+
+
+@click.command()
+@click.argument("log", type=options.Local(dir_okay=False), metavar="FILE.csv")
+@click.argument("design", metavar="DESIGN")
+@click.option(
+    "--calibration",
+    metavar="NAME",
+    shell_complete=options.calibrations,
+    help="Name or TOML file.  [default: that of DESIGN, or reference]",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def compare(log: Path, design: str, calibration: str | None, as_json: bool) -> None:
+    """Compare the log of a real jump with the simulated one.
+
+    FILE.csv has columns such as time_s, hip_rad, knee_rad, hip_current_a, knee_current_a and height_m. DESIGN is the
+    design.json of an export, or a row of Table I. Friction, torque constant, delay and stiffness are fitted.
+    """
+    from pareto_monoped.analysis.compare import SI, read_log
+    from pareto_monoped.analysis.compare import compare as compared
+
+    told = read_log(log)
+    found = compared(told, *_built(design, calibration))
+    if as_json:
+        echo(json.dumps(asdict(found), indent=2))
+        return
+    echo(f"{found.samples} samples of the push")
+    echo(f"{'residual, rms':18}{'as designed':>14}{'fitted':>12}")
+    for key, value in found.before.items():
+        echo(f"  {f'{key}, {SI[key]}':16}{value:>14.4g}{found.after[key]:>12.4g}")
+    echo(f"{'fitted':18}{'value':>14}   95 % interval, all together")
+    for key, one in found.fitted.items():
+        label, scale = (f"{key}, ms", 1e3) if key == "delay" else (f"{key}, factor", 1.0)
+        echo(f"  {label:22}{scale * one.value:>8.3f}   {scale * one.lower:.3f} to {scale * one.upper:.3f}")
+
+
+def _built(design: str, calibration: str | None) -> "tuple[Design, JointMaps, Calibration]":
+    """Return the design of an export or of Table I with its gearboxes and calibration."""
+    from pareto_monoped.actuator.ratiomap import joint_maps
+    from pareto_monoped.actuator.search import map_for
+    from pareto_monoped.cad.records import record_job
+    from pareto_monoped.design import PAPER_CASES, PAPER_MOTOR
+    from pareto_monoped.jump.calibration import load_calibration
+    from pareto_monoped.jump.calibration_defaults import DEFAULT, rules_for
+
+    if design in PAPER_CASES:
+        chosen = calibration or DEFAULT
+        maps = joint_maps(map_for(PAPER_MOTOR, rules_for(chosen)))
+        return PAPER_CASES[design].design, maps, load_calibration(chosen)
+    job = record_job(Path(design), folder=Path(), note=note)
+    return job.design, job.maps(), job.calibration if calibration is None else load_calibration(calibration)

@@ -13,6 +13,7 @@ __all__ = [
     "controller_record",
     "document",
     "end_stops",
+    "engines",
     "evaluate",
     "frames",
     "gravity",

@@ -109,7 +109,7 @@ RECORD = np.dtype(
 )  #: Everything the controller knows about one jump; pairs are hip, knee. MuJoCo's user data must be float64.
 RECORD_NUMBERS = RECORD.itemsize // 8  #: Length of a record in MuJoCo's user data.
 
-OBSERVED = {"position": 4, "velocity": 4, "directions": 4, "motor_torque_n_m": 2}
+OBSERVED = {"position": 4, "velocity": 4, "directions": 4, "motor_torque_n_m": 2, "motor_rad": 2}
 """Fields that tell the course of a jump, read after every call of the controller, with their numbers."""
 
 _COMPILED = ("controller.py", "virtual_leg.py", "planar.py")

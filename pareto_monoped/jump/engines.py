@@ -26,7 +26,7 @@ class Jumping(Protocol):
         """Make all jumps to their end."""
 
     def observed(self) -> list[Floats]:
-        """Make all jumps to their end, and return ``OBSERVED`` of each, n arrays of shape (steps, 14)."""
+        """Make all jumps to their end, and return ``OBSERVED`` of each, n arrays of shape (steps, 16)."""
 
     def complaints(self) -> list[str]:
         """Return what the engine found wrong in each jump; empty where nothing was."""
@@ -61,7 +61,7 @@ class PlanarPopulation:
         self._run(np.empty((len(self.records), 0, sum(OBSERVED.values()))))
 
     def observed(self) -> list[Floats]:
-        """Make all jumps to their end, and return ``OBSERVED`` of each, n arrays of shape (steps, 14)."""
+        """Make all jumps to their end, and return ``OBSERVED`` of each, n arrays of shape (steps, 16)."""
         # Memory that no step is written to costs nothing.
         room = int(self.records["step_limit"].max(initial=0.0)) + 1
         seen = np.empty((len(self.records), room, sum(OBSERVED.values())))

@@ -83,8 +83,8 @@ def _course(population: Jumping) -> list[Floats]:
 
 
 def _of_jump(seen: Floats, body: "_Bodies", rails_n: float) -> Floats:
-    """Return ``FRAME_COLUMNS`` of a jump from ``OBSERVED`` after each of its steps, shape (steps, 14)."""
-    position, velocity, directions, torque = np.split(seen, (4, 8, 12), axis=1)
+    """Return ``FRAME_COLUMNS`` of a jump from ``OBSERVED`` after each of its steps, shape (steps, 16)."""
+    position, velocity, directions, torque, _ = np.split(seen, (4, 8, 12, 14), axis=1)
     touches = body.clearance_m(position, directions) <= 0.0
     course: Floats = np.column_stack((position, velocity[:, 2:], torque, touches.astype(np.float64)))
     course[-1:, 6:8] = 0.0  # the controller ends a jump at the beginning of a step

@@ -308,7 +308,7 @@ def stepper() -> Callable[[Any, Any, Floats, int, Floats], None]:
     """Return the compiled function that makes jumps; it closes over ``origin``.
 
     Its arguments are records, grounds, start positions (n, nv), the number of torques, and room for what is observed of
-    each step, ``controller_record.OBSERVED``, shape (n, steps, 14); steps beyond the room are not kept.
+    each step, ``controller_record.OBSERVED``, shape (n, steps, 16); steps beyond the room are not kept.
     """
     return _stepper(zlib.crc32(f"{origin()}{GROUND.descr}{LEAST_IMPEDANCE}".encode()))
 
@@ -349,6 +349,7 @@ def _stepper(sources: int) -> Callable[[Any, Any, Floats, int, Floats], None]:
                         seen[i, step, 8 + k] = jump.directions[k]
                     for k in range(2):
                         seen[i, step, 12 + k] = jump.motor_torque_n_m[k]
+                        seen[i, step, 14 + k] = jump.motor_rad[k]
                 if jump.status > FLYING:
                     break
                 angles = jump.directions

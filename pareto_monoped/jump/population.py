@@ -83,7 +83,7 @@ class Population:
                     )
 
     def observed(self) -> list[Floats]:
-        """Make all jumps to their end, and return ``OBSERVED`` of each, n arrays of shape (steps, 14)."""
+        """Make all jumps to their end, and return ``OBSERVED`` of each, n arrays of shape (steps, 16)."""
         from mujoco import batch
 
         from pareto_monoped.jump.callback import controlled

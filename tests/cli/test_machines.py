@@ -3,9 +3,11 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from pareto_monoped.cli import main
+from tests.analysis.test_compare import NOISE, blind_log
 
 LEGS = Path(__file__).parents[2] / "examples" / "legs"
 
@@ -55,3 +57,49 @@ def test_replay_ends_in_one_line(capsys, words, line):
     assert (code, out) == (2, "")
     assert err.count("\n") == 1
     assert line in err
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    """A log of Case C with 1.05 times the torque constant, as a file in units of its own."""
+    found = blind_log("C", (1.2, 1.05, 1.2e-3, 0.9), np.random.default_rng(5))
+    scale = {"height": ("height_mm", 1e3), "hip": ("hip_deg", 180.0 / np.pi), "knee": ("knee_rad", 1.0)}
+    names = {name: scale.get(name, (f"{name}_a", 1.0)) for name in NOISE}
+    rows = np.column_stack([found.time_s, *(found.signals[name] * factor for name, (_, factor) in names.items())])
+    path = tmp_path_factory.mktemp("log") / "log.csv"
+    header = ",".join(["time_s", *(title for title, _ in names.values())])
+    np.savetxt(path, rows, delimiter=",", header=header, comments="")
+    return path
+
+
+def test_compare_prints_residuals_and_intervals(capsys, log):
+    code, out, _ = run(capsys, "compare", log, "C")
+    assert code == 0
+    lines = {line.split(",")[0].strip(): line.split() for line in out.splitlines()}
+    assert float(lines["torque_constant"][2]) == pytest.approx(1.05, abs=0.01)
+    assert float(lines["delay"][2]) == pytest.approx(1.2, abs=0.2)
+    assert float(lines["knee"][2]) > 2.0 * float(lines["knee"][3])
+
+
+def test_compare_as_json_fits_what_there_is(capsys, log):
+    """Under ``ideal``, neither Coulomb friction nor elastic drives."""
+    code, out, _ = run(capsys, "compare", log, "C", "--calibration", "ideal", "--json")
+    found = json.loads(out)
+    assert code == 0
+    assert set(found["fitted"]) == {"torque_constant", "delay"}
+    assert set(found["before"]) == set(NOISE)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("D",), "'D': cannot be read"),
+        (("none.json",), "cannot be read"),
+        (("C", "--calibration", "reference-3"), "calibration = 'reference-3': must be one with joints.stop_law"),
+    ],
+)
+def test_compare_ends_in_one_line(capsys, log, words, said):
+    code, out, err = run(capsys, "compare", log, *words)
+    assert (code, out) == (2, "")
+    assert err.count("\n") == 1
+    assert said in err

@@ -142,8 +142,8 @@ METAVARS = {
     "N", "X", "M", "J", "DEG", "PERCENT",
     # Names, in lists with commas where there are several; with a value; the weights of two objectives.
     "NAME", "A,B", "NAME=X", "NAME=X,...", "WH,WE",
-    # A study by name, a study file, a database, a folder, a file in a format of one's choice.
-    "STUDY", "STUDY.toml", "CAMPAIGN.toml", "DB", "DIR", "FILE",
+    # A study by name, files, a database, a folder, a loss and a series of a leg, a file in a format of one's choice.
+    "STUDY", "STUDY.toml", "CAMPAIGN.toml", "DB", "DIR", "FILE", "LEG.toml", "DESIGN", "TERM", "SERIES",
     "ADDRESS",  # of a scheduler
     "HASH",
 }  # fmt: skip
