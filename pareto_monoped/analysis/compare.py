@@ -27,6 +27,7 @@ from pareto_monoped.files import open_file
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.controller_record import MOST_DELAY
 from pareto_monoped.jump.engines import PlanarPopulation, population_of
+from pareto_monoped.jump.evaluate import evaluate_robots
 from pareto_monoped.jump.model import joint_friction_n_m, joint_places, motor_places, start_pose
 from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import robot_arrays
@@ -156,8 +157,9 @@ class _Machine:
         self.robots = robot_arrays(values, maps, calibration.mass)
         self.control = columns(values, CONTROL)
         self.pose = start_pose(self.robots, calibration)
-        if why := self.robots.reason[0] or self.pose.reason[0]:
-            raise SimulationError(f"design: {why}; compare with another design")
+        alone = evaluate_robots(self.robots, self.control, calibration)
+        if not alone.ok[0]:
+            raise SimulationError(f"design: does not jump as simulated, {alone.reason[0]}; compare with another design")
         self.step_s, self.period_s = calibration.simulation.timestep_s, calibration.simulation.period_s
         rubs = bool(joint_friction_n_m(self.robots, calibration.joints).any())
         self.free = [rubs, True, True, calibration.drive.elastic]
@@ -166,15 +168,6 @@ class _Machine:
 
     def nominal(self) -> Floats:
         return np.array([1.0, 1.0, self.calibration.simulation.delay_s, 1.0])
-
-    def require_jump(self) -> None:
-        """Refuse a design that does not jump as simulated."""
-        from pareto_monoped.jump.controller import APEX
-
-        jumps = self._population(self.nominal()[None, :])
-        jumps.run()
-        if jumps.records["status"][0] != APEX:
-            raise SimulationError("design: does not jump as simulated; compare with another design")
 
     def signals(self, parameters: Floats, times: Floats, names: list[str]) -> Floats:
         """Return the signals of n sets of parameters, shape (n, len of ``names``, len of ``times``).
@@ -248,7 +241,6 @@ def compare(log: Log, design: Design, maps: Maps, calibration: Calibration) -> C
         SimulationError: the design does not jump, or the fit does not settle.
     """
     machine = _Machine(design, maps, calibration)
-    machine.require_jump()
     names = [name for name in SIGNALS if name in log.signals]
     counts = (log.time_s >= 0.0) & (log.time_s <= _pushed_s(log))
     times, measured = log.time_s[counts], np.array([log.signals[name][counts] for name in names])

@@ -1,8 +1,9 @@
 """Calibrations: named, versioned records of everything that a jump depends on besides the robot.
 
 Shipped in ``data/calibrations`` are ``reference``, well-posed and the default; ``paper``, the paper's simulation with
-readings, fitted to its Table I; ``ideal``, which is ``reference`` without losses and with rigid drives; and ``stand``,
-which is ``reference`` on the rails of the test stand. Versions before stand in ``earlier``.
+readings, fitted to its Table I; ``ideal``, which is ``reference`` without losses and with rigid drives; ``printed``,
+which is ``reference`` with printed gears; and ``stand``, which is ``reference`` on the rails of the test stand.
+Versions before stand in ``earlier``.
 """
 
 import json
@@ -104,6 +105,8 @@ class Drive(Strict):
     standby_power_w: NotNegative = 0.0  #: of the electronics, as long as the jump lasts
     #: Which losses: those of the ``mesh`` alone, or the ``total`` of meshes, planets' bushes and bearings
     efficiency: Literal["mesh", "total"] = "mesh"
+    #: Factor on what the gearboxes lose under load: 1 for machined gears, 1.3 to 4 for printed ones (docs/bench.md)
+    gear_loss: Annotated[float, Field(ge=0.0, le=5.0)] = 1.0
     #: What the battery feeds: ``each_motor`` by itself, so that what one motor gives back is lost (all but
     #: ``regeneration_share``), or a ``bus`` on which the other motor takes it
     battery: Literal["each_motor", "bus"] = "each_motor"
@@ -310,7 +313,7 @@ _LATER = {
     "joints": ("rotors", "stops", "friction_share", "motor_damping_share_s_per_rad", "stop_law"),
     "drive": (
         *("knee_torque_scale", "regeneration_share", "standby_power_w", "efficiency", "battery", "winding_rise_k"),
-        *("elastic", "drive_damping_ratio", "backlash_rad"),
+        *("elastic", "drive_damping_ratio", "backlash_rad", "gear_loss"),
     ),
     "controller": ("weight", "flight"),
     "simulation": ("control_period_s", "delay_s", "positions_read", "engine"),

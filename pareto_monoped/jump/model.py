@@ -262,7 +262,8 @@ def gear_efficiency(robots: RobotArrays, drive: Drive) -> Floats:
     """Return the efficiency of both gearboxes under load, shape (n, 2), as the calibration reads it."""
     if not drive.mesh_losses:
         return np.ones_like(robots.efficiency)
-    return (robots.efficiency_total if drive.efficiency == "total" else robots.efficiency).copy()
+    known = (robots.efficiency_total if drive.efficiency == "total" else robots.efficiency).copy()
+    return known if drive.gear_loss == 1.0 else np.maximum(1.0 - drive.gear_loss * (1.0 - known), 0.0)
 
 
 def torque_limit(robots: RobotArrays, drive: Drive) -> Floats:

@@ -14,6 +14,7 @@ from pareto_monoped.report.schema import Case
 from pareto_monoped.storage.reader import StudyData
 
 if TYPE_CHECKING:
+    from pareto_monoped.jump.calibration import Calibration
     from pareto_monoped.report.resimulation import Resimulation
 
 _DRIFT_M = 0.001  # our own choice: the last digit in which the page shows a height
@@ -45,7 +46,8 @@ def sentences(data: StudyData, front: pd.DataFrame, cases: Sequence[Case]) -> li
             f"to {high['height_m']:.2f} m on {high['energy_j']:.1f} J."
         ]
     lines += _standing_up(front) if "height_m" in objectives.names else []
-    return [*lines, *(_against_paper(front, cases) if objectives == HEIGHT_AND_ENERGY else [])]
+    lines += _against_paper(front, cases) if objectives == HEIGHT_AND_ENERGY else []
+    return [*lines, _losses(data.calibration)]
 
 
 def _standing_up(front: pd.DataFrame) -> list[str]:
@@ -60,6 +62,18 @@ def _standing_up(front: pd.DataFrame) -> list[str]:
         f"leg: {low:.2f} m of the lowest, {height[0]:.2f} m, and {high:.2f} m of the highest, {height[1]:.2f} m. Their "
         f"centres of mass rise by {rise[0]:.2f} m and {rise[1]:.2f} m after lift-off."
     ]
+
+
+def _losses(calibration: "Calibration") -> str:
+    """Return which gears a study has, by what they lose."""
+    drive = calibration.drive
+    if not drive.mesh_losses or drive.gear_loss == 0.0:
+        return "Gears lose nothing in this study."
+    if drive.gear_loss == 1.0:
+        return "Gears lose what machined ones do; printed ones lose 1.3 to 4 times as much under load."
+    return (
+        f"Gears lose {drive.gear_loss:g} times what machined ones do under load; printed ones lose 1.3 to 4 times that."
+    )
 
 
 def _extent(front: pd.DataFrame, objectives: Objectives) -> str:

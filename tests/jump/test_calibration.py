@@ -15,10 +15,18 @@ from pareto_monoped.jump.calibration import (
 from pareto_monoped.jump.calibration_defaults import rules_for, strength_for
 
 
-def test_four_ship_and_the_default_is_the_well_posed_one():
-    assert calibration_names() == ("reference", "ideal", "paper", "stand")
+def test_five_ship_and_the_default_is_the_well_posed_one():
+    assert calibration_names() == ("reference", "ideal", "paper", "printed", "stand")
     assert load_calibration().name == "reference"
     assert isinstance(load_calibration().gate, FadeGate)
+
+
+def test_printed_is_the_reference_with_the_losses_of_printed_gears():
+    printed, known = calibration_values(load_calibration("printed")), calibration_values(load_calibration())
+    assert printed["drive"].pop("gear_loss") == pytest.approx((1.3 * 4.0) ** 0.5, abs=0.05)
+    for values in (printed, known):
+        del values["name"], values["version"], values["description"]
+    assert printed == known
 
 
 @pytest.mark.parametrize("name", calibration_names())

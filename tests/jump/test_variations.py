@@ -123,8 +123,9 @@ def test_what_a_calibration_can_say_is_as_if_it_said_so(evaluator, change, table
             {"drive": {"winding_rise_k": lambda rise: (1.1 * (1.0 + 0.00393 * rise) - 1.0) / 0.00393}},
         ),
         ({"gear_loss": np.zeros(2)}, {"drive": {"mesh_losses": False}}),
+        ({"gear_loss": np.full(2, 2.3)}, {"drive": {"gear_loss": 2.3}}),
     ],
-    ids=["chain", "winding", "gears without losses"],
+    ids=["chain", "winding", "gears without losses", "printed gears"],
 )
 def test_losses_and_warmth_are_as_if_the_calibration_said_so(evaluator, change, tables):
     varied, calibrated = evaluator(DESIGNS, variations=neutral(**change)), as_calibrated(evaluator, **tables)

@@ -69,7 +69,7 @@ def test_its_words_name_the_objectives(three):
     text = head(build([three]))
     data = three.data
     front = data.front()
-    sentence, standing = sentences(data, front, [])
+    sentence, standing, _ = sentences(data, front, [])
     assert "standing up" in standing
     for name in THREE:
         entry = measure(name)

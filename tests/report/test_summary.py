@@ -16,7 +16,7 @@ def front_of(data, points):
 def test_the_sentence_gives_the_price_of_the_headline_height(data, resimulation):
     case = replace(next(c for c in resimulation.cases if c.name == "C"), height_m=0.9, energy_j=40.0)
     front = front_of(data, [(0.7, 12.0), (0.85, 20.0), (0.95, 30.0)])
-    first, _, second = sentences(data, front, [case])
+    first, _, second, _ = sentences(data, front, [case])
     assert first.startswith("0.80 m costs at least 20.0 J; the front of 3 designs runs from 0.70 m on 12.0 J")
     assert "published: 0.80 m on 15.4 J" in second
     assert "reaches 0.90 m on 40.0 J" in second
@@ -61,3 +61,19 @@ def test_notes_tell_of_drift_bad_audits_and_an_early_end(data, resimulation):
     auditing = replace(data, meta=replace(data.meta, finished=False))
     assert notes(auditing, resimulation)[0].startswith("All 200 designs are simulated. The audit of the front is not")
     assert "up to 20.0 mm" in lines[2]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({}, "Gears lose what machined ones do; printed ones lose 1.3 to 4 times as much under load."),
+        ({"gear_loss": 2.3}, "Gears lose 2.3 times what machined ones do under load"),
+        ({"mesh_losses": False}, "Gears lose nothing in this study."),
+    ],
+)
+def test_the_last_sentence_says_which_gears_a_study_has(data, resimulation, change, words):
+    drive = replace(data.calibration.drive, **{"mesh_losses": True} | change)
+    rows = front_of(data, [(0.7, 12.0), (0.95, 30.0)])
+    other = replace(data)
+    other.__dict__["calibration"] = replace(data.calibration, drive=drive)  # a cached property
+    assert sentences(other, rows, resimulation.cases)[-1].startswith(words)
