@@ -100,7 +100,7 @@ def build_map(motor: Motor, settings: ActuatorSettings | None = None, *, keep: b
     searched = {}
     for family in (family for family in FAMILIES if present[family]):
         key = repr(("search", family, motor, settings)) if keep else None
-        stored = kept(key, lambda family=family: _as_arrays(_search(motor, family, settings)))  # type: ignore[misc]
+        stored = kept(key, lambda family=family: _as_arrays(_search(motor, family, settings)))  # type: ignore[misc]  # a default
         searched[family] = _from_arrays(stored, family)
     pools = {}
     for low in range(10 * RATIO_LOW, 10 * RATIO_HIGH):

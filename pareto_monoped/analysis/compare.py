@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
+from scipy.optimize import OptimizeResult, least_squares
 
 from pareto_monoped.actuator.ratiomap import Maps
 from pareto_monoped.config import MAX_JSON_CHARACTERS
@@ -46,6 +46,7 @@ SI = {"height": "m", "hip": "rad", "knee": "rad", "hip_current": "A", "knee_curr
 PARAMETERS = ("friction", "torque_constant", "delay", "stiffness")
 """Fitted: factors on Coulomb friction of both joints, on both torque constants and on the stiffness of both drives,
 and the delay from measuring to acting in s."""
+_BEGINS = (0.75, 1.0, 1.35)  # shares of the nominal stiffness from the best of which the fit begins; our own choice
 _OBSERVED = [1, 14, 15, 12, 13]  # where ``SIGNALS`` stand in ``controller_record.OBSERVED``
 _STEP_S = 5e-5  # With that of ``reference``, steps move the fit by as much as the noise of good sensors.
 _FEWEST = 50  # samples during the push; our own choice
@@ -249,19 +250,28 @@ def compare(log: Log, design: Design, maps: Maps, calibration: Calibration) -> C
     free, nominal = np.flatnonzero(machine.free), machine.nominal()
     trials = _Trials(machine, free, times, names, measured)
     first = trials.left(nominal[free])
-    values, scale = nominal[free], np.sqrt(np.mean(first**2, axis=1, keepdims=True))
-    for _ in range(_PASSES):
-        found = least_squares(
-            lambda x, scale=scale: (trials.left(x) / scale).ravel(),
-            values,
-            lambda x, scale=scale: (trials.slopes(x) / scale).reshape(len(free), -1).T,
+    scale = np.sqrt(np.mean(first**2, axis=1, keepdims=True))
+
+    def fit(start: Floats, scale: Floats) -> OptimizeResult:
+        return least_squares(
+            lambda x: (trials.left(x) / scale).ravel(),
+            start,
+            lambda x: (trials.slopes(x) / scale).reshape(len(free), -1).T,
             bounds=(_LEAST[free], machine.most[free]),
             x_scale=machine.steps[free],
             loss="huber",
             f_scale=_OUTLIER,
         )
-        values, left = found.x, trials.left(found.x)
+
+    # A drive swings, so that a fit may stop at a stiffness with one swing more or less.
+    stiffness = free == PARAMETERS.index("stiffness")
+    starts = [np.where(stiffness, share, 1.0) * nominal[free] for share in (_BEGINS if stiffness.any() else (1.0,))]
+    found = min((fit(start, scale) for start in starts), key=lambda one: one.cost)
+    for _ in range(_PASSES):
+        left = trials.left(found.x)
         scale = _MAD * np.median(np.abs(left), axis=1, keepdims=True)
+        found = fit(found.x, scale)
+    values, left = found.x, trials.left(found.x)
     if not found.success:
         raise SimulationError("fit: does not settle; check that log, design and calibration belong together")
     half = _STUDENT * np.sqrt(np.diag(np.linalg.inv(found.jac.T @ found.jac)) * _repeats(left))

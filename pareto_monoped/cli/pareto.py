@@ -14,7 +14,7 @@ import click
 
 from pareto_monoped.cli import options
 from pareto_monoped.cli.options import DATABASE_FILE, Local
-from pareto_monoped.cli.terminal import echo, new_console
+from pareto_monoped.cli.terminal import echo, new_console, note
 
 if TYPE_CHECKING:
     from pareto_monoped.analysis.choices import Choice
@@ -90,7 +90,7 @@ def pareto(
         return default_pick(data, [data, *studies[1:]]).trial
 
     # The pick may be behind the front, where no design was audited.
-    first = settled(studies[0], lambda data: [begins_with(data)], notify=lambda text: echo(f"note: {text}", err=True))
+    first = settled(studies[0], lambda data: [begins_with(data)], notify=note)
     studies[0], chosen = first, begins_with(first)
     design = cad / f"trial_{chosen}"
     job = trial_job(studies[0], chosen, folder=design)
@@ -154,8 +154,8 @@ class _Steps:
         self.done += 1
         words = [command, *map(str, arguments)]
         up_to_date = made()
-        note = "  (up to date)" if up_to_date else ""
-        echo(f"[{self.done}/{self.total}] pareto-monoped {' '.join(words)}{note}", err=True)
+        ending = "  (up to date)" if up_to_date else ""
+        echo(f"[{self.done}/{self.total}] pareto-monoped {' '.join(words)}{ending}", err=True)
         if not up_to_date:
             with contextlib.redirect_stdout(io.StringIO()):
                 code = cli.main(args=words, prog_name="pareto-monoped", standalone_mode=False)

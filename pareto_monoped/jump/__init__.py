@@ -1,8 +1,8 @@
 """Stage 2: a robot becomes a MuJoCo model, jumps under the paper's controller, and its jump is measured.
 
 Order of imports, lowest first: calibration_defaults, controller_record, quiet, rebound; calibration, virtual_leg;
-controller, end_stops, rail_leg; callback, model; document, planar, variations; gravity, population; engines, frames;
-evaluate; peers, replay, shared, single; balance; audit; screen, table1.
+controller, end_stops, rail_leg; callback, model; document, planar, variations; gravity, population; engines;
+evaluate, frames; peers, replay, shared, single; balance; audit; screen, table1.
 """
 
 __all__ = [

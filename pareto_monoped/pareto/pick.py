@@ -81,11 +81,12 @@ def compromise(values: Floats, front: Floats, weights: tuple[float, ...], object
     )
 
 
-def nearest(rows: "DataFrame", front: "DataFrame", wish: Mapping[str, float]) -> Scored:
+def nearest(rows: "DataFrame", front: "DataFrame", everyone: "DataFrame", wish: Mapping[str, float]) -> Scored:
     """Compute scores by the greatest shortfall from the wish (Wierzbicki 1980, The use of reference objectives).
 
-    Shortfalls are scaled to the extent of the front. A wish that several designs surpass goes to the one that surpasses
-    it most. Of designs with the same greatest shortfall, the one with the least sum of them comes first.
+    Shortfalls are scaled to the extent of the front, or of ``everyone`` where the front has none. A wish that several
+    designs surpass goes to the one that surpasses it most. Of designs with the same greatest shortfall, the one with
+    the least sum of them comes first.
     """
     columns = []
     for name, wanted in wish.items():
@@ -93,7 +94,7 @@ def nearest(rows: "DataFrame", front: "DataFrame", wish: Mapping[str, float]) ->
         if np.isnan(values).all():
             raise SelectionError(f"nearest {name} = {wanted:g}: no design has a value of it; drop it")
         sign = -1.0 if measure(name).direction == "maximise" else 1.0
-        extent = _extent(column(front, name)) or _extent(values)
+        extent = _extent(column(front, name)) or _extent(column(everyone, name))
         columns.append(np.nan_to_num(sign * (values - wanted) / (extent or 1.0), nan=np.inf))
     short = np.stack(columns, axis=1)
     worst = short.max(axis=1)
@@ -290,7 +291,7 @@ def _chosen(
         case Compromise():
             scored = compromise(values, front, chooser.values, objectives)
         case Nearest(wish=wish):
-            scored = nearest(among, whole, wish)
+            scored = nearest(among, whole, rows, wish)
     row = int(np.argmax(scored.score))
     return int(np.flatnonzero(able)[row]), scored.why(row)
 

@@ -145,7 +145,7 @@ def study_card(
         picks=picks,
         more={f"{body}_kg": column(masses_kg[:, i]) for i, body in enumerate(("base", "thigh", "shank"))},
         audits=audit_records(data.audits),
-        jumps=packed_jumps(_with_alternatives(data, again, picks, trials), again.frames),
+        jumps=packed_jumps(_with_those_pointed_out(data, again, picks, trials), again.frames),
         case_jumps=packed_jumps(again.case_jumps, MOST_FRAMES),
         stops_rad={str(places.kits[kit.label]): _stops_rad(data, kit) for kit in data.kits},
         models={str(trial): model for trial, model in source.models.items()},
@@ -203,14 +203,14 @@ def _floor_j(data: StudyData) -> list[float]:
     return (np.floor(1e4 * least) / 1e4).tolist() if np.isfinite(least).all() else []
 
 
-def _with_alternatives(
+def _with_those_pointed_out(
     data: StudyData, again: Resimulation, picks: Sequence[Picked], trials: pd.DataFrame
 ) -> "dict[int, Recording]":
-    """Return the jumps of the front, if it has any, and of the alternatives, most of which are just behind it."""
+    """Return the jumps of the front, if it has any, and of picks and alternatives, most of which are just behind it."""
     jumps = dict(again.jumps)
     if not jumps:
         return jumps
-    rows = trials.iloc[sorted({other.row for one in picks for other in one.alternatives})]
+    rows = trials.iloc[sorted({other.row for one in picks for other in one.alternatives} | {one.row for one in picks})]
     rows = rows[~rows["trial"].isin(list(jumps))]
     for kit, places in data.kit_rows(rows):
         members = rows.iloc[places]

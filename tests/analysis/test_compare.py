@@ -96,17 +96,18 @@ def blind(seed):
     return true, compare(log, known(case)[0], map_for("VT8020"), load_calibration("reference"))
 
 
-def test_true_values_lie_inside_the_intervals_of_blind_logs():
-    """In 18 of 20 logs at least all four at once; and no interval is so wide that it says nothing."""
+@pytest.mark.parametrize(("logs", "least"), [(5, 4), pytest.param(20, 18, marks=pytest.mark.long)])
+def test_true_values_lie_inside_the_intervals_of_blind_logs(logs, least):
+    """In nearly all logs all four at once; and no interval is so wide that it says nothing."""
     held, widths = 0, []
-    for seed in range(20):
+    for seed in range(logs):
         true, found = blind(seed)
         ends = np.array([(found.fitted[name].lower, found.fitted[name].upper) for name in PARAMETERS])
         held += bool(((ends[:, 0] <= true) & (true <= ends[:, 1])).all())
         widths.append(ends[:, 1] - ends[:, 0])
         assert all(found.after[name] == pytest.approx(noise, rel=0.25) for name, noise in NOISE.items())
         assert found.before["knee"] > 2.0 * found.after["knee"]
-    assert held >= 18
+    assert held >= least
     assert (np.median(widths, axis=0) < [0.7, 0.015, 0.5e-3, 0.1]).all()
 
 

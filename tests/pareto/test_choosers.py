@@ -198,6 +198,21 @@ def shortfall(record, conditions, front):
     )
 
 
+def test_a_condition_does_not_change_what_is_near_on_a_front_of_one_design():
+    """Shortfalls were scaled to the designs that meet the condition."""
+    front = pd.DataFrame(
+        {
+            "trial": [100, 101, 103, 104],
+            "energy_j": 0.55,
+            "height_m": [0.83, 0.62, 0.76, 0.62],
+            "mass_kg": [0.76, 0.55, 0.55, 0.9],
+        }
+    )
+    wish = Nearest(wish={"height_m": 0.8, "mass_kg": 0.7})
+    heavy = Condition(name="mass_kg", side="max", value=0.76)
+    assert pick(front, wish).trial == pick(front, Among(conditions=(heavy,), chooser=wish)).trial
+
+
 @given(front=fronts())
 def test_a_condition_that_the_choice_meets_does_not_change_it(front):
     nearest = Nearest(wish={"height_m": 0.8, "mass_kg": 0.7})

@@ -116,6 +116,7 @@ def test_the_floor_is_the_least_of_all_studies(payload):
 def test_states_over_time_are_those_of_the_knees_jump(payload):
     (card,) = payload.studies
     row = card.picks[0].row
+    assert {card.trials.trial[one.row] for one in card.picks} <= set(card.jumps.keys)  # also one behind the front
     data = _states_data(card, row)
     figure = Figure()
     _states(payload, figure)
