@@ -96,7 +96,8 @@ def _generation(
     rows = np.arange(number * size, (number + 1) * size) % len(designs)
     evaluations, now = take(jumped, rows), datetime.now(UTC)
     share = 1.0 - 0.1 * (number * _GOLDEN % 1.0)
-    evaluations = replace(evaluations, **{name: share * evaluations.of(name) for name in _SAFETIES})
+    safeties: dict[str, Any] = {name: share * evaluations.of(name) for name in _SAFETIES}
+    evaluations = replace(evaluations, **safeties)
     return Generation(
         number=number,
         first_trial=number * size,
