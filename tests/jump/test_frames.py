@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -49,6 +51,19 @@ def test_frames_are_those_of_the_whole_trace(name):
         assert np.median(off[jump.steps < jump.lift_off_step]) < 0.003
         assert off[at_lift_off] < 0.15
         assert jump.lift_off_step == np.flatnonzero(trace["contact_z_n"] > 0.0)[-1]
+
+
+def test_rough_rails_push_down_on_the_way_up():
+    """The floor's force of a film, which follows from the momentum, against MuJoCo's own under rails of 5 N each."""
+    known = load_calibration("stand")
+    calibration = replace(known, stand=replace(known.stand, rail_friction_n=5.0))
+    designs = random_designs(3, seed=3)
+    robots, control = robot_arrays(designs, map_for("VT8020"), calibration.mass), columns(designs, CONTROL)
+    for i, jump in enumerate(recordings(robots, control, calibration, 40)):
+        trace = trace_of(take(robots, np.array([i])), control[i : i + 1], calibration)
+        rising = (jump.steps > 3) & (jump.steps < jump.lift_off_step)
+        off = jump.columns["contact_z_n"] - trace["contact_z_n"][jump.steps]
+        assert np.abs(np.median(off[rising])) < 1.0
 
 
 def test_a_jump_does_not_depend_on_the_others_or_on_the_threads():
