@@ -108,6 +108,21 @@ def test_notes_and_shortlist_come_back_with_the_link(tab, made, open_tab):
     assert tab.page.locator("#kept li").count() == 2
 
 
+def test_a_link_followed_is_not_written_over_before_it_is_read(tab, made):
+    """A reload at once came back without the link's view: what was still to be written took its place."""
+    first, second = jumping(made, 2)
+    keep(tab, made, first)
+    tab.page.wait_for_timeout(400)
+    link = tab.page.evaluate("location.hash")
+    keep(tab, made, second)
+    found = tab.page.evaluate(
+        "link => { document.querySelector('#kept li:nth-child(1) button:last-child').click();"
+        " location.hash = link; window.dispatchEvent(new Event('pagehide')); return location.hash; }",
+        link,
+    )
+    assert found == link
+
+
 def test_seven_do_not_fit(tab, made):
     keep(tab, made, *range(6))
     go = made.card.trials.trial[made.card.front[7]]

@@ -128,8 +128,8 @@ function stateOf(fragment) {
   return result;
 }
 
-// Undo: the fragments of the states so far, and the place among them.
-const past = { steps: [], at: -1, kind: "", time: 0, writing: 0 };
+// Undo: the fragments of the states so far, and the place among them; and the address as it was last read or written.
+const past = { steps: [], at: -1, kind: "", time: 0, writing: 0, address: "" };
 
 function remember(kind = "") {
   const fragment = fragmentOf(state);
@@ -175,7 +175,10 @@ function writeNow() {
   clearTimeout(past.writing);
   past.writing = 0;
   const fragment = past.steps[past.at];
+  // Another address is that of a link that was just followed: it is still to be read.
+  if (location.hash !== past.address) return;
   if (location.hash.slice(1) !== fragment && (past.at > 0 || isView())) history.replaceState(null, "", `#${fragment}`);
+  past.address = location.hash;
 }
 
 function showSteps() {
@@ -187,6 +190,7 @@ function isView() { return location.hash.slice(1, 1 + VIEW.length) === VIEW; }
 
 // The state in the address, if it is one; a damaged one is left alone with one line.
 function readAddress() {
+  past.address = location.hash;
   if (!isView()) return null;
   try {
     const found = stateOf(location.hash.slice(1));
