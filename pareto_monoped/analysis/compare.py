@@ -46,7 +46,7 @@ SI = {"height": "m", "hip": "rad", "knee": "rad", "hip_current": "A", "knee_curr
 PARAMETERS = ("friction", "torque_constant", "delay", "stiffness")
 """Fitted: factors on Coulomb friction of both joints, on both torque constants and on the stiffness of both drives,
 and the delay from measuring to acting in s."""
-_BEGINS = (0.75, 1.0, 1.35)  # shares of the nominal stiffness from the best of which the fit begins; our own choice
+_BEGINS = (0.75, 1.0, 1.35)  # shares of the nominal stiffness at which fits begin, of which the best counts; our choice
 _OBSERVED = [1, 14, 15, 12, 13]  # where ``SIGNALS`` stand in ``controller_record.OBSERVED``
 _STEP_S = 5e-5  # With that of ``reference``, steps move the fit by as much as the noise of good sensors.
 _FEWEST = 50  # samples during the push; our own choice

@@ -319,9 +319,9 @@ def start_qpos(robots: RobotArrays, calibration: Calibration, pose: StartPose) -
 
 
 def standing_torque_n_m(robots: RobotArrays, calibration: Calibration, pose: StartPose) -> Floats:
-    """Return torques that hold robots in their start pose, shape (n, 2): the force on the foot goes up through the hip.
+    """Return torques that hold robots in their start pose, shape (n, 2).
 
-    Each joint carries the moments about it of that force and of the links below it.
+    Each joint carries the moments about it of the floor's force, which points straight up, and of the links below it.
     """
     thigh_rad, shank_rad = pose.hip_rad, pose.hip_rad + pose.knee_rad
     knee_m, foot_m = -robots.thigh_length_m * np.sin(thigh_rad), -robots.shank_length_m * np.sin(shank_rad)

@@ -47,16 +47,7 @@ def recorded(m, q, delay, constant):
             if substep == 0:
                 rows[period, 0], rows[period, 1], rows[period, 2] = q[1], q[n - 2], q[n - 1]
                 rows[period, 3], rows[period, 4] = motor[0], motor[1]
-            a1 = planar.acceleration(q, v, motor, m, mode, loads)
-            v2 = planar.moved(v, 0.5 * h, a1)
-            a2 = planar.acceleration(planar.moved(q, 0.5 * h, v), v2, motor, m, mode, loads)
-            v3 = planar.moved(v, 0.5 * h, a2)
-            a3 = planar.acceleration(planar.moved(q, 0.5 * h, v2), v3, motor, m, mode, loads)
-            v4 = planar.moved(v, h, a3)
-            a4 = planar.acceleration(planar.moved(q, h, v3), v4, motor, m, mode, loads)
-            for i in range(n):
-                q[i] += h * (v[i] + 2 * v2[i] + 2 * v3[i] + v4[i]) / 6
-                v[i] += h * (a1[i] + 2 * a2[i] + 2 * a3[i] + a4[i]) / 6
+            planar.step(q, v, motor, m, mode, loads, h)
     return rows
 
 

@@ -1,4 +1,4 @@
-"""Commands in processes of their own."""
+"""Commands in this process and in processes of their own."""
 
 import os
 import shutil
@@ -6,8 +6,20 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
+from pareto_monoped.cli import main
+
 ROOT = Path(__file__).parents[2]
 STORED = ROOT / "tests" / "storage" / "data" / "plain.db"
+
+
+def run(capsys, *words):
+    """Exit code, output and messages of a command."""
+    with pytest.raises(SystemExit) as ended:
+        main([str(word) for word in words])
+    printed = capsys.readouterr()
+    return ended.value.code, printed.out, printed.err
 
 
 def own_process(folder, words, *, stdout=None, closed=(), environment=None):

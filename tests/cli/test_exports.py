@@ -11,16 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from pareto_monoped.cli import main
 from pareto_monoped.cli.exports import _duration, _radians
-from tests.cli.support import STORED
-
-
-def run(capsys, *words):
-    with pytest.raises(SystemExit) as end:
-        main([str(word) for word in words])
-    printed = capsys.readouterr()
-    return end.value.code, printed.out, printed.err
+from tests.cli.support import STORED, run
 
 
 @pytest.mark.parametrize(

@@ -8,17 +8,11 @@ import mujoco
 import numpy as np
 import pytest
 
-from pareto_monoped.cli import jumps, main
+from pareto_monoped.cli import jumps
 from pareto_monoped.design import PAPER_CASES, PAPER_NAMES, VARIABLES
 from pareto_monoped.jump.evaluate import STATUSES
 from pareto_monoped.jump.table1 import Result, Row, Spread
-
-
-def run(capsys, *arguments):
-    with pytest.raises(SystemExit) as stopped:
-        main([str(word) for word in arguments])
-    out = capsys.readouterr()
-    return stopped.value.code, out.out, out.err
+from tests.cli.support import run
 
 
 def test_simulate_json_has_what_others_rely_on(capsys):

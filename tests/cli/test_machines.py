@@ -6,17 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pareto_monoped.cli import main
 from tests.analysis.test_compare import NOISE, blind_log
+from tests.cli.support import run
 
 LEGS = Path(__file__).parents[2] / "examples" / "legs"
-
-
-def run(capsys, *words):
-    with pytest.raises(SystemExit) as ended:
-        main([str(word) for word in words])
-    shown = capsys.readouterr()
-    return ended.value.code, shown.out, shown.err
 
 
 def test_replay_prints_predicted_beside_measured(capsys):

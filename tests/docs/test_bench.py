@@ -2,25 +2,19 @@
 
 import importlib
 import re
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.docs.scripts import ROOT, imported, rows
+
 PAGE = (ROOT / "docs" / "bench.md").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")
 def bench():
-    sys.path.insert(0, str(ROOT / "benchmarks"))
-    yield importlib.import_module("actuator_bench")
-    sys.path.remove(str(ROOT / "benchmarks"))
-
-
-def rows(text):
-    return [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if "--" not in line]
+    with imported("actuator_bench") as found:
+        yield found
 
 
 def test_the_page_shows_what_its_script_prints(bench, capsys):

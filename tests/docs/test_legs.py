@@ -1,27 +1,19 @@
 """docs/legs.md shows what its script prints, and the page, the figure and the examples belong together."""
 
-import importlib
 import re
-import sys
-from pathlib import Path
 
 import pytest
 
 from pareto_monoped.jump.rail_leg import load_leg
+from tests.docs.scripts import ROOT, imported, rows
 
-ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "legs.md").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")
 def script():
-    sys.path.insert(0, str(ROOT / "benchmarks"))
-    yield importlib.import_module("rail_legs")
-    sys.path.remove(str(ROOT / "benchmarks"))
-
-
-def rows(text):
-    return [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if "--" not in line]
+    with imported("rail_legs") as found:
+        yield found
 
 
 def test_the_page_shows_what_its_script_predicts(script, capsys):

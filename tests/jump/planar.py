@@ -262,6 +262,23 @@ def moved(state, h, rate):
 
 
 @numba.njit(cache=True)
+def step(q, v, motor, m, mode, loads, h):
+    """Make a step of Runge and Kutta in place; returns the acceleration at its start, whose ``LOADS`` are written."""
+    later = np.zeros(5)
+    a1 = acceleration(q, v, motor, m, mode, loads)
+    v2 = moved(v, 0.5 * h, a1)
+    a2 = acceleration(moved(q, 0.5 * h, v), v2, motor, m, mode, later)
+    v3 = moved(v, 0.5 * h, a2)
+    a3 = acceleration(moved(q, 0.5 * h, v2), v3, motor, m, mode, later)
+    v4 = moved(v, h, a3)
+    a4 = acceleration(moved(q, h, v3), v4, motor, m, mode, later)
+    for i in range(len(q)):
+        q[i] += h * (v[i] + 2 * v2[i] + 2 * v3[i] + v4[i]) / 6
+        v[i] += h * (a1[i] + 2 * a2[i] + 2 * a3[i] + a4[i]) / 6
+    return a1
+
+
+@numba.njit(cache=True)
 def jump(m, q):
     """Height in m, mechanical energy and energy at the battery in J; then the peaks of ``LOADS``."""
     n = len(q)
@@ -288,29 +305,21 @@ def jump(m, q):
             motor[j] = shares[due, j] * limited(torques[due, j], v, m, j) if due >= 0 else 0.0
         for _ in range(SUBSTEPS):
             loads[:] = 0.0
-            a1 = acceleration(q, v, motor, m, mode, loads)
+            before = v.copy()
+            a1 = step(q, v, motor, m, mode, loads, h)
             loads[0] = abs(motor[0] - m.rotor[0] * a1[n - 2])
             loads[1] = abs(motor[1] - m.rotor[1] * a1[n - 1] - m.rotor[1] / m.ratio * a1[2])
             for i in range(5):
                 peaks[i] = max(peaks[i], loads[i])
-            v2 = moved(v, 0.5 * h, a1)
-            a2 = acceleration(moved(q, 0.5 * h, v), v2, motor, m, mode, loads)
-            v3 = moved(v, 0.5 * h, a2)
-            a3 = acceleration(moved(q, 0.5 * h, v2), v3, motor, m, mode, loads)
-            v4 = moved(v, h, a3)
-            a4 = acceleration(moved(q, h, v3), v4, motor, m, mode, loads)
             drawn = 0.0
             for j in range(2):
                 i = n - 2 + j
-                power = motor[j] * (v[i] + h * (a1[i] + 2 * a2[i] + 2 * a3[i] + a4[i]) / 12)
+                power = motor[j] * 0.5 * (before[i] + v[i])
                 energy += max(power, 0.0) * h
                 drawn += power + m.heat[j] * motor[j] ** 2
                 if j == 1 or not m.bus:
                     battery += max(drawn, 0.0) * h
                     drawn = 0.0
-            for i in range(n):
-                q[i] += h * (v[i] + 2 * v2[i] + 2 * v3[i] + v4[i]) / 6
-                v[i] += h * (a1[i] + 2 * a2[i] + 2 * a3[i] + a4[i]) / 6
             height = max(height, q[1])
     return np.nan, np.nan, np.nan, peaks
 
