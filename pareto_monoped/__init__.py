@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from pareto_monoped.design import PAPER_CASES, VARIABLES, Design
     from pareto_monoped.errors import ParetoMonopedError
     from pareto_monoped.jump.calibration import Calibration
+    from pareto_monoped.jump.laws import OwnLaw
     from pareto_monoped.measures import MEASURES
     from pareto_monoped.search.algorithm import Scores, Space
     from pareto_monoped.study.outside import OptunaObjective
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "MEASURES", "PAPER_CASES", "VARIABLES", "Calibration", "Design", "MonopedProblem", "Motor", "OptunaObjective",
-    "ParetoMonopedError", "Picked", "Scores", "Space", "StoredStudy", "Study", "__version__", "actuator_map",
+    "OwnLaw", "ParetoMonopedError", "Picked", "Scores", "Space", "StoredStudy", "Study", "__version__", "actuator_map",
     "build_robot", "export", "export_trial", "load_calibration", "load_motor", "load_study", "plot_actuators",
     "plot_front", "plot_jump", "resume", "robust", "run", "simulate", "trace", "write_report",
 ]  # fmt: skip
@@ -54,6 +55,7 @@ _HOMES = {
     "design": ("PAPER_CASES", "VARIABLES", "Design"),
     "errors": ("ParetoMonopedError",),
     "jump.calibration": ("Calibration",),
+    "jump.laws": ("OwnLaw",),
     "measures": ("MEASURES",),
     "definition.study": ("Study",),
     "study.outside": ("OptunaObjective",),

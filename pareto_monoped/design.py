@@ -21,7 +21,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import wraps
 from numbers import Real
-from typing import Literal, TypeVar, get_args
+from typing import Any, Literal, TypeVar, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -113,11 +113,32 @@ VARIABLES: tuple[Variable, ...] = (
 )
 # fmt: on
 """The records of all design variables, the paper's seven first; each has name, unit, bounds, meaning and default."""
-NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES)
+MOST_KNOTS = 12  #: Of a torque profile, per joint.
+
+
+def _knot(joint: str, number: int) -> Variable:
+    symbol, meaning = f"{joint[0]}{number}", f"knot {number} of the {joint}'s torque, as a share of its motor's peak"
+    return _variable(
+        f"{joint}_knot_{number}", symbol, "1", (-1.0, 1.0), meaning, f"{joint} knot {number}", 3, default=0.0
+    )
+
+
+KNOTS: tuple[Variable, ...] = (
+    _variable("push_time_s", "t_p", "s", (0.1, 0.6), "time from the first knot to the last", "push time", 0,
+        shown=("ms", 1000.0), default=0.3),
+    *(_knot(joint, number) for joint in ("hip", "knee") for number in range(1, MOST_KNOTS + 1)),
+)  # fmt: skip
+"""The records of the variables of torque profiles (``jump.laws``), of which a study has those that its controller
+names; for all others they are out of use, at their defaults."""
+NAMES: tuple[str, ...] = tuple(variable.name for variable in (*VARIABLES, *KNOTS))
 """In the order of the columns of arrays of designs."""
+PLAIN_NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES)
+"""Without the variables of torque profiles."""
+KNOT_NAMES: tuple[str, ...] = tuple(variable.name for variable in KNOTS)
+"""Of torque profiles: the push time, the knots of the hip, then those of the knee."""
 PAPER_NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES if variable.default is None)
 """The names of the paper's seven, which come first."""
-DEFAULTS: dict[str, float] = {v.name: v.default for v in VARIABLES if v.default is not None}
+DEFAULTS: dict[str, float] = {v.name: v.default for v in (*VARIABLES, *KNOTS) if v.default is not None}
 """Optional variable -> its default."""
 LENGTHS = ("thigh_length_m", "shank_length_m")
 RATIOS = ("knee_ratio", "hip_ratio")
@@ -130,19 +151,22 @@ UPPER: Floats = np.array([variable.upper for variable in VARIABLES if variable.d
 LOWER.flags.writeable = False
 UPPER.flags.writeable = False
 
+MOST = 1e9  #: Beyond this value of any variable, numbers overflow.
 _SHORTEST_M = 0.05  #: Of a link or start; a shorter link has no room for the actuators' output couplings.
 LEAST: Floats = np.array(
-    [_SHORTEST_M if name in (*LENGTHS, "start_height_m") else 1.0 if name in RATIOS else 0.0 for name in NAMES]
+    [
+        *(_SHORTEST_M if n in (*LENGTHS, "start_height_m") else 1.0 if n in RATIOS else 0.0 for n in PLAIN_NAMES),
+        *(-MOST for _ in KNOT_NAMES),  # motors have limits of their own, and an own law means what it likes
+    ]
 )  #: The least value of each variable that a design can mean; a ratio of 1 is no gearbox. Shape (number of variables,).
 LEAST.flags.writeable = False
-MOST = 1e9  #: Beyond this value of any variable, numbers overflow.
 
 
 def in_use(values: Mapping[str, ArrayLike]) -> tuple[Variable, ...]:
     """Return the paper's seven variables and the optional ones that differ from their defaults anywhere in a table."""
     return tuple(
         variable
-        for variable in VARIABLES
+        for variable in (*VARIABLES, *KNOTS)
         if variable.default is None
         or (variable.name in values and bool(np.any(np.asarray(values[variable.name]) != variable.default)))
     )
@@ -151,7 +175,8 @@ def in_use(values: Mapping[str, ArrayLike]) -> tuple[Variable, ...]:
 def complete(designs: ArrayLike) -> Floats:
     """Return designs with a column for each variable, of which optional ones may have been left out at their defaults.
 
-    ``designs`` has shape (..., 7), the paper's variables, or (..., number of variables), in the order of ``NAMES``.
+    ``designs`` has shape (..., 7), the paper's variables, (..., 10), all of ``VARIABLES``, or a column per name of
+    ``NAMES``, in this order.
 
     Raises:
         DesignError: another number of values.
@@ -160,17 +185,34 @@ def complete(designs: ArrayLike) -> Floats:
     given = values.shape[-1] if values.ndim else 0
     if given == len(NAMES):
         return values
-    if given != len(PAPER_NAMES):
-        allowed = f"(..., {len(PAPER_NAMES)}) or (..., {len(NAMES)})"
+    if given not in (len(PAPER_NAMES), len(PLAIN_NAMES)):
+        allowed = f"(..., {len(PAPER_NAMES)}) or (..., {len(PLAIN_NAMES)})"
         raise DesignError(
-            complaint("shape of designs", values.shape, allowed, f"give {', '.join(NAMES)} in this order")
+            complaint("shape of designs", values.shape, allowed, f"give {', '.join(PLAIN_NAMES)} in this order")
         )
-    optional = np.broadcast_to(list(DEFAULTS.values()), (*values.shape[:-1], len(DEFAULTS)))
-    return np.concatenate([values, optional], axis=-1)
+    left = [DEFAULTS[name] for name in NAMES[given:]]
+    return np.concatenate([values, np.broadcast_to(left, (*values.shape[:-1], len(left)))], axis=-1)
+
+
+def designs_of(table: Any) -> Floats:
+    """Return designs, shape (n, number of variables), from a table with a column per variable.
+
+    Optional variables that the table leaves out have their defaults.
+    """
+    count = len(table[PAPER_NAMES[0]])
+    given = [table[name] if name in table else np.full(count, DEFAULTS[name]) for name in NAMES]
+    return np.column_stack([np.asarray(column, dtype=np.float64) for column in given])
+
+
+def table_of(designs: Floats) -> dict[str, Floats]:
+    """Return name -> values, shape (n,), of all of ``VARIABLES`` and of those of ``KNOTS`` that are in use."""
+    columns = dict(zip(NAMES, designs.T, strict=True))
+    used = {variable.name for variable in in_use(columns)}
+    return {name: values for name, values in columns.items() if name in PLAIN_NAMES or name in used}
 
 
 def complete_control(control: ArrayLike) -> Floats:
-    """Return values in the order of ``CONTROL``, shape (n, 6), from K, C and T, shape (n, 3), or from all of them."""
+    """Return values in the order of ``CONTROL``, a row per jump, from K, C and T, shape (n, 3), or from all of them."""
     values = np.atleast_2d(np.asarray(control, dtype=np.float64))
     missing = [DEFAULTS[name] for name in CONTROL[values.shape[1] :]]
     return np.concatenate([values, np.broadcast_to(missing, (len(values), len(missing)))], axis=1)
@@ -209,13 +251,17 @@ def _checked(kind: type[_T]) -> type[_T]:
     made = kind.__init__
 
     @wraps(made)
-    def checked(self: _T, **values: float) -> None:
+    def checked(self: _T, **values: Any) -> None:
+        profile = values.pop("profile", ())
+        values |= dict(zip(KNOT_NAMES, profile, strict=False))
         for name in values:
             if name not in NAMES:
-                raise DesignError(unknown_name("design variable", name, NAMES))
+                raise DesignError(unknown_name("design variable", name, PLAIN_NAMES))
         if missing := [name for name in PAPER_NAMES if name not in values]:
             raise DesignError(f"design: lacks {', '.join(missing)}; add them")
-        made(self, **{name: _number(name, value) for name, value in values.items()})
+        numbers = {name: _number(name, value) for name, value in values.items()}
+        knots = tuple(numbers.pop(name, DEFAULTS[name]) for name in KNOT_NAMES)
+        made(self, **numbers, profile=knots)
 
     kind.__init__ = checked  # type: ignore[assignment, method-assign]  # replaced on purpose
     return kind
@@ -225,6 +271,8 @@ def _checked(kind: type[_T]) -> type[_T]:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Design:
     """One design: a value for each variable, in the order of ``NAMES``; optional ones have defaults.
+
+    Those of a torque profile are given by their names, too, and kept together in ``profile``.
 
     The paper's bounds play no part, but values that nobody can mean are a ``DesignError``: links and starts of less
     than 0.05 m, gear ratios below 1, negative stiffness, damping or release, and what is no finite number.
@@ -246,14 +294,15 @@ class Design:
     knee_release_rad: float = 0.0
     rest_length_m: float = REST_LENGTH_M
     start_height_m: float = BASE_START_HEIGHT_M
+    profile: tuple[float, ...] = field(default=(), repr=False)  #: in the order of ``KNOT_NAMES``
 
     def as_array(self) -> Floats:
         """Return the values in the order of ``NAMES``, shape (number of variables,)."""
-        return np.array([getattr(self, name) for name in NAMES], dtype=np.float64)
+        return np.array([*(getattr(self, name) for name in PLAIN_NAMES), *self.profile], dtype=np.float64)
 
     def as_dict(self) -> dict[str, float]:
         """Return the values by name: the paper's seven, and the optional ones that differ from their defaults."""
-        values = {name: getattr(self, name) for name in NAMES}
+        values = dict(zip(NAMES, self.as_array().tolist(), strict=True))
         return {name: value for name, value in values.items() if value != DEFAULTS.get(name)}
 
     @classmethod
@@ -268,7 +317,7 @@ class Design:
         except (TypeError, ValueError, OverflowError):
             raise DesignError(complaint("design", values, "a number for each variable", "correct it")) from None
         if array.ndim != 1:
-            shape = f"({len(PAPER_NAMES)},) or ({len(NAMES)},)"
+            shape = f"({len(PAPER_NAMES)},) or ({len(PLAIN_NAMES)},)"
             raise DesignError(complaint("shape of a design", array.shape, shape, "give one design"))
         return cls(**dict(zip(NAMES, complete(array).tolist(), strict=True)))
 
@@ -283,8 +332,8 @@ class Design:
             raise DesignError(complaint("changes of a design", changes, allowed, "give one"))
         for name in changes:
             if name not in NAMES:
-                raise DesignError(unknown_name("design variable", name, NAMES))
-        return Design.from_array([changes.get(name, getattr(self, name)) for name in NAMES])
+                raise DesignError(unknown_name("design variable", name, PLAIN_NAMES))
+        return Design.from_array([changes.get(n, value) for n, value in zip(NAMES, self.as_array(), strict=True)])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from pareto_monoped.compute.chunks import AT_ONCE, cores, in_turn
-from pareto_monoped.design import NAMES
+from pareto_monoped.design import designs_of
 from pareto_monoped.errors import InputError, SelectionError, StudyError, complaint
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.measures import MEASURES, STATISTICS
@@ -89,7 +89,7 @@ def robust(
 
 def simulated(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator, samples: Samples) -> dict[int, Robustness]:
     """Return the robustness of some trials by number."""
-    designs = rows[list(NAMES)].to_numpy(dtype=np.float64)
+    designs = designs_of(rows)
     motors = data.kit_numbers(rows)
     refuse_other_jumps(data, rows, evaluator)
     count = len(samples)
@@ -106,7 +106,7 @@ def simulated(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator, samples
 
 def refuse_other_jumps(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator) -> None:
     """Refuse trials that do not jump as they are stored; name the first one."""
-    height_m = evaluator(rows[list(NAMES)].to_numpy(dtype=np.float64), data.kit_numbers(rows)).height_m
+    height_m = evaluator(designs_of(rows), data.kit_numbers(rows)).height_m
     stored = rows["height_m"].to_numpy(dtype=np.float64)
     other = np.flatnonzero(height_m != stored)
     if len(other):

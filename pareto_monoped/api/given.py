@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.ratiomap import JointMaps, motor_label
 from pareto_monoped.definition.given import as_list, as_table, is_series
 from pareto_monoped.definition.variables import MOTOR_KEYS
-from pareto_monoped.design import DEFAULTS, NAMES, PAPER_NAMES, Design, complete
+from pareto_monoped.design import DEFAULTS, NAMES, PAPER_NAMES, PLAIN_NAMES, Design, complete
 from pareto_monoped.errors import CalibrationError, DesignError, InputError, StudyError, complaint
 from pareto_monoped.jump.calibration import (
     Calibration,
@@ -137,6 +137,16 @@ def given_designs(designs: Any) -> Given:
     return _unsaid(complete(np.atleast_2d(values)))
 
 
+def renamed(designs: Any, names: Mapping[str, str]) -> Any:
+    """Return designs with some of their columns called otherwise, in any form that ``simulate`` takes."""
+    if isinstance(designs, list | tuple):
+        return [renamed(one, names) for one in designs]
+    if not names or not _is_named(designs):
+        return designs
+    table = as_table(designs)
+    return {names.get(name, name): table[name] for name in table}
+
+
 def with_motors(designs: Any, maps: JointMaps) -> NDArray[np.float64]:
     """Return designs as an array of shape (n, number of variables), in any form that ``simulate`` takes.
 
@@ -201,7 +211,7 @@ def _of_columns(table: "Mapping[str, Any] | DataFrame") -> Given:
 
 
 def _near(name: object) -> str:
-    for known in (NAMES, _known()):
+    for known in (PLAIN_NAMES, _known()):
         if near := difflib.get_close_matches(str(name), known, n=1):
             return f"did you mean {near[0]!r}?"
     return "correct the name, or drop it"

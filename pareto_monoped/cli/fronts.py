@@ -13,7 +13,7 @@ from pareto_monoped.cli import options
 from pareto_monoped.cli.options import CSV_FILE, DATABASE, force_option
 from pareto_monoped.cli.selection import condition_options, required, selector_options
 from pareto_monoped.cli.terminal import WIDTH, echo, note, wrapped
-from pareto_monoped.design import VARIABLES, Variable, in_use
+from pareto_monoped.design import KNOTS, VARIABLES, Variable, in_use
 from pareto_monoped.storage.place import StudyPlace
 
 if TYPE_CHECKING:
@@ -158,7 +158,7 @@ def _objectives(given: str | None, data: "StudyData") -> "Objectives":
 
 
 def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
-    shown = [variable for variable in VARIABLES if variable.name in rows.columns]
+    shown = [variable for variable in (*VARIABLES, *KNOTS) if variable.name in rows.columns]
     heads = [f"{entry.short} {entry.unit}".removesuffix(" 1") for entry in objectives.measures]
     widths = [max(len(head), 8) for head in heads]
     # The motors' names stand last, each in a column as wide as the longest.

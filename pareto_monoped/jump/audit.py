@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.ratiomap import Maps, joint_maps
 from pareto_monoped.compute.chunks import pace_of, spread, task_threads
-from pareto_monoped.design import CONTROL, DEFAULTS, NAMES, PAPER_NAMES, RATIOS, Floats, columns, complete
+from pareto_monoped.design import CONTROL, DEFAULTS, KNOT_NAMES, NAMES, PAPER_NAMES, RATIOS, Floats, columns, complete
 from pareto_monoped.jump.balance import Balanced, balanced
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.controller_record import MOST_DELAY
@@ -116,6 +116,8 @@ def perturbed(designs: Floats, count: int, rng: np.random.Generator) -> Floats:
     copies[:, places] *= 1.0 + PERTURBATION * rng.uniform(-1.0, 1.0, (len(copies), len(places)))
     for name, default in DEFAULTS.items():
         place = NAMES.index(name)
+        if name in KNOT_NAMES and (copies[:, place] == default).all():
+            continue
         factor = 1.0 + PERTURBATION * rng.uniform(-1.0, 1.0, len(copies))
         copies[:, place] *= np.where(copies[:, place] == default, 1.0, factor)
     return copies

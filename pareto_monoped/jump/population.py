@@ -213,6 +213,7 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
     # A design that leaves the rest length at its default takes that of its calibration.
     free = given["rest_length_m"] != REST_LENGTH_M
     records["rest_length_m"] = np.where(free, given["rest_length_m"], calibration.controller.rest_length_m)
+    calibration.controller.law.fill(records, given, robots)
     whole = calibration.controller.weight == "robot"
     mass_kg = robots.body_mass_kg.sum(axis=1) if whole else robots.body_mass_kg[:, BODIES.index("base")]
     records["weight_n"] = calibration.controller.gravity_feed_forward * (mass_kg * GRAVITY_M_PER_S2)

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pareto_monoped.design import CONTROL, NAMES, PAPER_CASES, columns
+from pareto_monoped.design import CONTROL, PAPER_CASES, columns, designs_of
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.report.packing import number
 from pareto_monoped.report.schema import Case
@@ -54,7 +54,7 @@ def resimulate(
     jumps: dict[int, Recording] = {}
     for kit, places in data.kit_rows(rows):
         members = rows.iloc[places]
-        made = jumps_of(members[list(NAMES)].to_numpy(dtype=np.float64), kit, data.calibration, frames, workers)
+        made = jumps_of(designs_of(members), kit, data.calibration, frames, workers)
         jumps |= of_trials(members, made)
     numbers = rows["trial"].astype(int).tolist()
     heights = zip(numbers, rows["height_m"].tolist(), strict=True)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.definition.study import Study
-from pareto_monoped.design import NAMES
+from pareto_monoped.design import NAMES, PLAIN_NAMES
 from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.search.algorithm import Floats, Space
@@ -148,7 +148,7 @@ class OptunaObjective:
         for name, missed in zip(self._jump.constraint_names, judged.constraints[0].tolist(), strict=True):
             trial.set_constraint(name, missed)
         trial.set_user_attr("status", str(table["status"][0]))
-        for name in (*NAMES, *MEASURE_NAMES):
+        for name in (*PLAIN_NAMES, *MEASURE_NAMES):
             value = float(table[name][0])
             trial.set_user_attr(name, value if np.isfinite(value) else None)
         if judged.failed[0]:

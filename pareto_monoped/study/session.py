@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.definition.study import Study
-from pareto_monoped.design import NAMES
+from pareto_monoped.design import designs_of
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import AtHeight, GrowingFront, best_at_height
 from pareto_monoped.pareto.objectives import hypervolume
@@ -239,7 +239,7 @@ def _rows(data: StudyData, first: int, end: int) -> tuple[NDArray[np.float64], M
         violation=rows["violation"].to_numpy(),
         constraints=missed(study.constraints, measures, (rows["state"] == "failed").to_numpy()),
     )
-    return rows[list(NAMES)].to_numpy(dtype=np.float64), motors, known
+    return designs_of(rows), motors, known
 
 
 def _history(data: StudyData, coordinates: Coordinates) -> Iterator[tuple[NDArray[np.float64], Scores]]:

@@ -17,6 +17,7 @@ from pareto_monoped.errors import CalibrationError, StudyError, complaint
 from pareto_monoped.jump.calibration import Calibration, calibration_values, load_calibration
 from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
+from pareto_monoped.jump.laws import PAPER_LAW
 from pareto_monoped.jump.shared import evaluator_of
 from pareto_monoped.leg.thigh_outline import require_leg
 from pareto_monoped.search.space import Coordinates, kit_maps, searched_coordinates
@@ -130,6 +131,8 @@ def _simulator(
         raise StudyError(complaint("engine", study.engine, allowed, "drop it, or choose another calibration"))
     if study.engine is not None:
         calibration = calibration.by(study.engine)
+    if study.controller != PAPER_LAW:
+        calibration = calibration.under(study.controller)
     names = [motor.name for motor in motors]
     for name in names:
         if names.count(name) > 1:
