@@ -261,7 +261,7 @@ def _checked(kind: type[_T]) -> type[_T]:
             raise DesignError(f"design: lacks {', '.join(missing)}; add them")
         numbers = {name: _number(name, value) for name, value in values.items()}
         knots = tuple(numbers.pop(name, DEFAULTS[name]) for name in KNOT_NAMES)
-        made(self, **numbers, profile=knots)
+        made(self, **numbers, profile=knots)  # type: ignore[call-arg]
 
     kind.__init__ = checked  # type: ignore[assignment, method-assign]  # replaced on purpose
     return kind

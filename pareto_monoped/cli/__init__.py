@@ -4,7 +4,7 @@ Numbers go to stdout, messages and progress to stderr. Bad input ends with one l
 running with 1, an interrupt with 130.
 
 Order of imports, lowest first: actuator_sheets, terminal; options, process, watching; actuators, campaign, jumps,
-machines, pareto, selection, stored, studies; exports, fronts, robustness.
+machines, pareto, selection, stored, studies; exports, fronts, limit, robustness.
 """
 
 import difflib
@@ -20,7 +20,7 @@ _COMMANDS = {
     "replay": "machines", "compare": "machines",
     "run": "studies", "resume": "studies", "status": "studies", "campaign": "campaign", "verify": "stored",
     "repair": "stored", "trials": "stored", "front": "fronts", "pick": "fronts", "robust": "robustness",
-    "sensitivity": "robustness", "export": "exports", "report": "stored", "dashboard": "stored",
+    "limit": "limit", "sensitivity": "robustness", "export": "exports", "report": "stored", "dashboard": "stored",
 }  # fmt: skip
 
 

@@ -307,7 +307,7 @@ class Calibration(Strict):
 
     def under(self, law: Law) -> "Calibration":
         """Return the same calibration with a law of the motors."""
-        return replace(self, controller=replace(self.controller, law=law))
+        return replace(self, controller=replace(self.controller, law=law))  # type: ignore[arg-type]  # or one of a script
 
     @property
     def label(self) -> str:

@@ -71,7 +71,7 @@ class VirtualLeg(Law, Strict):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Profile(Law, Strict):
+class Profile(Law, Strict):
     """Torques of both joints through knots at equal distances, as shares of the motors' peak torques there."""
 
     kind: str
@@ -103,9 +103,13 @@ class _Profile(Law, Strict):
         """Return the law as the table of a study file."""
         return asdict(self)
 
+    @abstractmethod
+    def shares(self, time_s: Floats, leg_m: Floats, straight_m: float) -> Floats:
+        """Return how far states of a push, from its first to its last, are from the first knot to the last one."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TorqueOverTime(_Profile):
+class TorqueOverTime(Profile):
     """Knots over time, from the start of the jump to the push time; the last one is held until the foot has left."""
 
     kind: Literal["torque_over_time"]
@@ -114,16 +118,20 @@ class TorqueOverTime(_Profile):
     @property
     def variables(self) -> tuple[Variable, ...]:
         """The push time and the knots."""
-        return (KNOTS[0], *_Profile.variables.fget(self))  # type: ignore[attr-defined]  # super() lacks a class here
+        return (KNOTS[0], *Profile.variables.fget(self))  # type: ignore[attr-defined]  # super() lacks a class here
 
     def fill(self, records: Any, given: Mapping[str, Floats], robots: "RobotArrays") -> None:
         """Write the knots and the times between which they lie."""
-        _Profile.fill(self, records, given, robots)
+        Profile.fill(self, records, given, robots)
         records["first_knot"], records["per_profile"] = 0.0, 1.0 / given["push_time_s"]
+
+    def shares(self, time_s: Floats, leg_m: Floats, straight_m: float) -> Floats:
+        """Return the shares of the push time."""
+        return time_s / time_s[-1]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TorqueOverLength(_Profile):
+class TorqueOverLength(Profile):
     """Knots over the leg's length from hip to foot, from that at the start to that of the straight leg."""
 
     kind: Literal["torque_over_length"]
@@ -131,10 +139,14 @@ class TorqueOverLength(_Profile):
 
     def fill(self, records: Any, given: Mapping[str, Floats], robots: "RobotArrays") -> None:
         """Write the knots and the lengths between which they lie."""
-        _Profile.fill(self, records, given, robots)
+        Profile.fill(self, records, given, robots)
         start_m = robots.start_height_m - robots.foot_radius_m
         records["first_knot"] = start_m
         records["per_profile"] = 1.0 / (robots.thigh_length_m + robots.shank_length_m - start_m)
+
+    def shares(self, time_s: Floats, leg_m: Floats, straight_m: float) -> Floats:
+        """Return the shares of the way from the first length to that of the straight leg."""
+        return np.asarray(np.clip((leg_m - leg_m[0]) / (straight_m - leg_m[0]), 0.0, 1.0))
 
 
 AnyLaw = Annotated[VirtualLeg | TorqueOverTime | TorqueOverLength, Field(discriminator="kind")]
@@ -158,7 +170,12 @@ def law_of(given: Any, *, source: str, error: type[InputError] = InputError) -> 
     kind = table.get("kind") if isinstance(table, Mapping) else table
     if kind not in KINDS:
         raise error(f"{source}: {unknown_name('controller', kind, KINDS)}")
-    law: Law = checked(_LAWS[kind], table, source=f"{source}, table [controller]", error=error)
+    law: Law = checked(
+        _LAWS[kind],
+        table,  # type: ignore[arg-type]  # one of several classes
+        source=f"{source}, table [controller]",
+        error=error,
+    )
     return law
 
 
@@ -237,7 +254,7 @@ def _address(torques: Callable[..., Any]) -> float:
     law, count = numba.njit(error_model="numpy")(torques), len(KNOT_NAMES)
     pointer = numba.types.CPointer(numba.types.float64)
 
-    @numba.cfunc(numba.types.void(pointer, pointer, pointer), error_model="numpy")
+    @numba.cfunc(numba.types.void(pointer, pointer, pointer), error_model="numpy")  # type: ignore[untyped-decorator]
     def act(state: Any, variables: Any, torque: Any) -> None:
         moment = numba.carray(state, (7,)).view(state_type)[0]
         found = law(moment, numba.carray(variables, (count,)))
