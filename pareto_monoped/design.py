@@ -130,16 +130,18 @@ KNOTS: tuple[Variable, ...] = (
 )  # fmt: skip
 """The records of the variables of torque profiles (``jump.laws``), of which a study has those that its controller
 names; for all others they are out of use, at their defaults."""
-NAMES: tuple[str, ...] = tuple(variable.name for variable in (*VARIABLES, *KNOTS))
-"""In the order of the columns of arrays of designs."""
-PLAIN_NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES)
-"""Without the variables of torque profiles."""
+ALL_NAMES: tuple[str, ...] = tuple(variable.name for variable in (*VARIABLES, *KNOTS))
+"""In the order of the columns of arrays of designs with torque profiles."""
+NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES)
+"""In the order of the columns of arrays of designs without."""
 KNOT_NAMES: tuple[str, ...] = tuple(variable.name for variable in KNOTS)
 """Of torque profiles: the push time, the knots of the hip, then those of the knee."""
 PAPER_NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES if variable.default is None)
 """The names of the paper's seven, which come first."""
-DEFAULTS: dict[str, float] = {v.name: v.default for v in (*VARIABLES, *KNOTS) if v.default is not None}
+DEFAULTS: dict[str, float] = {v.name: v.default for v in VARIABLES if v.default is not None}
 """Optional variable -> its default."""
+ALL_DEFAULTS = DEFAULTS | {v.name: v.default for v in KNOTS if v.default is not None}
+"""The same with the variables of torque profiles."""
 LENGTHS = ("thigh_length_m", "shank_length_m")
 RATIOS = ("knee_ratio", "hip_ratio")
 PAPER_CONTROL = ("stiffness_n_per_m", "damping_n_s_per_m", "torsional_stiffness_n_m_per_rad")
@@ -155,7 +157,7 @@ MOST = 1e9  #: Beyond this value of any variable, numbers overflow.
 _SHORTEST_M = 0.05  #: Of a link or start; a shorter link has no room for the actuators' output couplings.
 LEAST: Floats = np.array(
     [
-        *(_SHORTEST_M if n in (*LENGTHS, "start_height_m") else 1.0 if n in RATIOS else 0.0 for n in PLAIN_NAMES),
+        *(_SHORTEST_M if n in (*LENGTHS, "start_height_m") else 1.0 if n in RATIOS else 0.0 for n in NAMES),
         *(-MOST for _ in KNOT_NAMES),  # motors have limits of their own, and an own law means what it likes
     ]
 )  #: The least value of each variable that a design can mean; a ratio of 1 is no gearbox. Shape (number of variables,).
@@ -175,59 +177,66 @@ def in_use(values: Mapping[str, ArrayLike]) -> tuple[Variable, ...]:
 def complete(designs: ArrayLike) -> Floats:
     """Return designs with a column for each variable, of which optional ones may have been left out at their defaults.
 
-    ``designs`` has shape (..., 7), the paper's variables, (..., 10), all of ``VARIABLES``, or a column per name of
-    ``NAMES``, in this order.
+    ``designs`` has shape (..., 7), the paper's variables, or a column for each of ``NAMES`` or ``ALL_NAMES``, in this
+    order; these stay as they are.
 
     Raises:
         DesignError: another number of values.
     """
     values = np.asarray(designs, dtype=np.float64)
     given = values.shape[-1] if values.ndim else 0
-    if given == len(NAMES):
+    if given in (len(NAMES), len(ALL_NAMES)):
         return values
-    if given not in (len(PAPER_NAMES), len(PLAIN_NAMES)):
-        allowed = f"(..., {len(PAPER_NAMES)}) or (..., {len(PLAIN_NAMES)})"
+    if given != len(PAPER_NAMES):
+        allowed = f"(..., {len(PAPER_NAMES)}) or (..., {len(NAMES)})"
         raise DesignError(
-            complaint("shape of designs", values.shape, allowed, f"give {', '.join(PLAIN_NAMES)} in this order")
+            complaint("shape of designs", values.shape, allowed, f"give {', '.join(NAMES)} in this order")
         )
-    left = [DEFAULTS[name] for name in NAMES[given:]]
-    return np.concatenate([values, np.broadcast_to(left, (*values.shape[:-1], len(left)))], axis=-1)
+    optional = np.broadcast_to(list(DEFAULTS.values()), (*values.shape[:-1], len(DEFAULTS)))
+    return np.concatenate([values, optional], axis=-1)
 
 
 def designs_of(table: Any) -> Floats:
     """Return designs, shape (n, number of variables), from a table with a column per variable.
 
-    Optional variables that the table leaves out have their defaults.
+    Optional variables that the table leaves out have their defaults; those of torque profiles are there if it has one.
     """
     count = len(table[PAPER_NAMES[0]])
-    given = [table[name] if name in table else np.full(count, DEFAULTS[name]) for name in NAMES]
+    names = ALL_NAMES if any(name in table for name in KNOT_NAMES) else NAMES
+    given = [table[name] if name in table else np.full(count, ALL_DEFAULTS[name]) for name in names]
     return np.column_stack([np.asarray(column, dtype=np.float64) for column in given])
 
 
 def table_of(designs: Floats) -> dict[str, Floats]:
     """Return name -> values, shape (n,), of all of ``VARIABLES`` and of those of ``KNOTS`` that are in use."""
-    columns = dict(zip(NAMES, designs.T, strict=True))
+    columns = dict(zip(ALL_NAMES, designs.T, strict=False))
     used = {variable.name for variable in in_use(columns)}
-    return {name: values for name, values in columns.items() if name in PLAIN_NAMES or name in used}
+    return {name: values for name, values in columns.items() if name in NAMES or name in used}
 
 
 def complete_control(control: ArrayLike) -> Floats:
-    """Return values in the order of ``CONTROL``, a row per jump, from K, C and T, shape (n, 3), or from all of them."""
+    """Return values of ``CONTROL`` and ``KNOT_NAMES``, shape (n, 31), from the first 3, 6 or all of them."""
     values = np.atleast_2d(np.asarray(control, dtype=np.float64))
-    missing = [DEFAULTS[name] for name in CONTROL[values.shape[1] :]]
+    missing = [ALL_DEFAULTS[name] for name in (*CONTROL, *KNOT_NAMES)[values.shape[1] :]]
     return np.concatenate([values, np.broadcast_to(missing, (len(values), len(missing)))], axis=1)
 
 
 def columns(designs: ArrayLike, names: Sequence[str]) -> Floats:
     """Return a C-ordered copy of some variables' values, such as ``CONTROL``; for ``designs`` see ``complete``."""
-    return np.take(complete(designs), [NAMES.index(name) for name in names], axis=-1)
+    return np.take(complete(designs), [ALL_NAMES.index(name) for name in names], axis=-1)
+
+
+def control_of(designs: ArrayLike) -> Floats:
+    """Return what a jump needs besides the robot: columns of ``CONTROL`` and of a torque profile, if there is one."""
+    values = complete(designs)
+    return np.concatenate([columns(values, CONTROL), values[..., len(NAMES) :]], axis=-1)
 
 
 def nonsense(name: str, value: float) -> str | None:
     """Return what is wrong with a value that no design can mean; the paper's bounds play no part. None if it is one."""
     if not np.isfinite(value):
         return complaint(name, float(value), "a finite number", "give a number")
-    least = LEAST[NAMES.index(name)]
+    least = LEAST[ALL_NAMES.index(name)]
     if value < least:
         return f"{name} = {value:g}: must be at least {least:g}; give a larger value"
     return f"{name} = {value:g}: must be at most {MOST:g}; give a smaller value" if value > MOST else None
@@ -255,12 +264,12 @@ def _checked(kind: type[_T]) -> type[_T]:
         profile = values.pop("profile", ())
         values |= dict(zip(KNOT_NAMES, profile, strict=False))
         for name in values:
-            if name not in NAMES:
-                raise DesignError(unknown_name("design variable", name, PLAIN_NAMES))
+            if name not in ALL_NAMES:
+                raise DesignError(unknown_name("design variable", name, NAMES))
         if missing := [name for name in PAPER_NAMES if name not in values]:
             raise DesignError(f"design: lacks {', '.join(missing)}; add them")
         numbers = {name: _number(name, value) for name, value in values.items()}
-        knots = tuple(numbers.pop(name, DEFAULTS[name]) for name in KNOT_NAMES)
+        knots = tuple(numbers.pop(name, ALL_DEFAULTS[name]) for name in KNOT_NAMES) if len(values) > len(NAMES) else ()
         made(self, **numbers, profile=knots)  # type: ignore[call-arg]
 
     kind.__init__ = checked  # type: ignore[assignment, method-assign]  # replaced on purpose
@@ -297,13 +306,13 @@ class Design:
     profile: tuple[float, ...] = field(default=(), repr=False)  #: in the order of ``KNOT_NAMES``
 
     def as_array(self) -> Floats:
-        """Return the values in the order of ``NAMES``, shape (number of variables,)."""
-        return np.array([*(getattr(self, name) for name in PLAIN_NAMES), *self.profile], dtype=np.float64)
+        """Return the values in the order of ``NAMES``, shape (10,), or with a profile of ``ALL_NAMES``, shape (35,)."""
+        return np.array([*(getattr(self, name) for name in NAMES), *self.profile], dtype=np.float64)
 
     def as_dict(self) -> dict[str, float]:
         """Return the values by name: the paper's seven, and the optional ones that differ from their defaults."""
-        values = dict(zip(NAMES, self.as_array().tolist(), strict=True))
-        return {name: value for name, value in values.items() if value != DEFAULTS.get(name)}
+        values = dict(zip(ALL_NAMES, self.as_array().tolist(), strict=False))
+        return {name: value for name, value in values.items() if value != ALL_DEFAULTS.get(name)}
 
     @classmethod
     def from_array(cls, values: ArrayLike) -> "Design":
@@ -317,9 +326,9 @@ class Design:
         except (TypeError, ValueError, OverflowError):
             raise DesignError(complaint("design", values, "a number for each variable", "correct it")) from None
         if array.ndim != 1:
-            shape = f"({len(PAPER_NAMES)},) or ({len(PLAIN_NAMES)},)"
+            shape = f"({len(PAPER_NAMES)},) or ({len(NAMES)},)"
             raise DesignError(complaint("shape of a design", array.shape, shape, "give one design"))
-        return cls(**dict(zip(NAMES, complete(array).tolist(), strict=True)))
+        return cls(**dict(zip(ALL_NAMES, complete(array).tolist(), strict=False)))
 
     def replace(self, changes: Mapping[str, float]) -> "Design":
         """Return a copy with some variables changed.
@@ -331,9 +340,9 @@ class Design:
             allowed = "a mapping of variables to numbers, such as {'knee_ratio': 6.0}"
             raise DesignError(complaint("changes of a design", changes, allowed, "give one"))
         for name in changes:
-            if name not in NAMES:
-                raise DesignError(unknown_name("design variable", name, PLAIN_NAMES))
-        return Design.from_array([changes.get(n, value) for n, value in zip(NAMES, self.as_array(), strict=True)])
+            if name not in ALL_NAMES:
+                raise DesignError(unknown_name("design variable", name, NAMES))
+        return Design(**(dict(zip(ALL_NAMES, self.as_array().tolist(), strict=False)) | dict(changes)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

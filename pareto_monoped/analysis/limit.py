@@ -1,8 +1,8 @@
 """What the hardware of a design can do with the best torque found, whatever the controller: energy and height.
 
-The torques of both joints go through knots over time (``jump.laws.TorqueOverTime``), which CMA-ES moves, beginning with
-the torques that the virtual leg tells the motors. Every jump counts that leaves no bumper pressed beyond its travel, and
-once more if it also overloads no part. A value found is a certificate: that jump reaches it. That nothing better exists
+The torques of both joints go through knots over time (``jump.laws.TorqueOverTime``). CMA-ES moves them, beginning with
+the torques that the virtual leg tells the motors. A jump counts if it presses no bumper beyond its travel, and counts
+as held if it also overloads no part. A value found is a certificate: that jump reaches it. That nothing better exists
 is not shown; the bound below which no controller can be is ``jump.gravity.least_energy_j``.
 """
 
@@ -15,7 +15,17 @@ import pandas as pd
 
 from pareto_monoped.actuator.ratiomap import JointMaps
 from pareto_monoped.compute.chunks import cores
-from pareto_monoped.design import CONTROL, DEFAULTS, KNOT_NAMES, MOST_KNOTS, NAMES, Design, Floats, columns, designs_of
+from pareto_monoped.design import (
+    ALL_DEFAULTS,
+    ALL_NAMES,
+    KNOT_NAMES,
+    MOST_KNOTS,
+    NAMES,
+    Design,
+    Floats,
+    control_of,
+    designs_of,
+)
 from pareto_monoped.errors import SelectionError, StudyError
 from pareto_monoped.jump.audit import finer
 from pareto_monoped.jump.calibration import Calibration
@@ -104,14 +114,14 @@ class _Hardware:
         self.design, self.maps, self.energy = design, maps, energy
         self.virtual, self.calibration = calibration, calibration.under(LAW)
         self._evaluator = Evaluator(maps, self.calibration, workers)
-        self._places = [NAMES.index(name) for name in KNOT_NAMES]
-        self.base = design.copy()
+        self._places = [ALL_NAMES.index(name) for name in KNOT_NAMES]
+        self.base = np.array([*design[: len(NAMES)], *(ALL_DEFAULTS[name] for name in KNOT_NAMES)])
         for name in OF_VIRTUAL_LEG:
-            self.base[NAMES.index(name)] = DEFAULTS.get(name, 0.0)
+            self.base[ALL_NAMES.index(name)] = ALL_DEFAULTS.get(name, 0.0)
         self.jumps = 0
         self.own = Evaluator(maps, calibration)(design)
         robots = robot_arrays(design, maps, calibration.mass)
-        profile = told_profiles(robots, columns(design[None], CONTROL), calibration, LAW)[0]
+        profile = told_profiles(robots, control_of(design[None]), calibration, LAW)[0]
         low, high = _TIMES_S
         self.told = np.clip(np.append((profile[0] - low) / (high - low), 0.5 * (profile[1:] + 1.0)), 0.0, 1.0)
         self.floor_j = float(least_energy_j(robots, calibration, self.own.height_m)[0])

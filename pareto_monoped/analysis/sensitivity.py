@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pareto_monoped.analysis.robustness import refuse_other_jumps
 from pareto_monoped.compute.chunks import cores
 from pareto_monoped.definition.variables import Bounds
-from pareto_monoped.design import KNOTS, NAMES, RATIOS, VARIABLES, Variable, designs_of
+from pareto_monoped.design import ALL_NAMES, KNOTS, RATIOS, VARIABLES, Variable, designs_of
 from pareto_monoped.errors import InputError, SelectionError, complaint
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.measures import ENERGIES, measure, nominal
@@ -184,7 +184,7 @@ def _of_variables(
                 moved = between(factor, values)
             else:
                 moved = listed[np.minimum((values * len(listed)).astype(np.intp), len(listed) - 1)]
-            designs[:, NAMES.index(factor.name)] = moved
+            designs[:, ALL_NAMES.index(factor.name)] = moved
         return _measured(evaluator(designs, np.repeat(data.kit_numbers(row), len(points))), names)
 
     return tuple(factor for factor, _ in places), simulate
@@ -194,7 +194,7 @@ def _places(data: StudyData, row: pd.DataFrame, name: str, within: float) -> tup
     """Return a free variable as a factor; for a gearbox also the ratios that it goes through."""
     value, bounds = float(row[name].iloc[0]), data.study.variables[name]
     assert isinstance(bounds, Bounds)
-    variable = (*VARIABLES, *KNOTS)[NAMES.index(name)]
+    variable = (*VARIABLES, *KNOTS)[ALL_NAMES.index(name)]
     if name in RATIOS and data.study.gear_list:
         kit = data.kit_of_trial(int(row["trial"].iloc[0]))
         ratios = np.array([gear.ratio for gear in gear_list(kit.of(name.removesuffix("_ratio")), bounds)])

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.ratiomap import JointMaps, motor_label
 from pareto_monoped.definition.given import as_list, as_table, is_series
 from pareto_monoped.definition.variables import MOTOR_KEYS
-from pareto_monoped.design import DEFAULTS, NAMES, PAPER_NAMES, PLAIN_NAMES, Design, complete
+from pareto_monoped.design import ALL_DEFAULTS, ALL_NAMES, KNOT_NAMES, NAMES, PAPER_NAMES, Design, complete
 from pareto_monoped.errors import CalibrationError, DesignError, InputError, StudyError, complaint
 from pareto_monoped.jump.calibration import (
     Calibration,
@@ -100,7 +100,7 @@ def _known() -> tuple[str, ...]:
     """Return the names of columns that frames of designs may have: those of stored trials."""
     from pareto_monoped.storage.columns import COLUMNS
 
-    return tuple(dict.fromkeys((*NAMES, *(column.name for column in COLUMNS), *GOAL_NAMES)))
+    return tuple(dict.fromkeys((*ALL_NAMES, *(column.name for column in COLUMNS), *GOAL_NAMES)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -200,7 +200,8 @@ def _of_columns(table: "Mapping[str, Any] | DataFrame") -> Given:
             raise DesignError(f"designs: {name!r} is neither a variable nor a column of stored trials; {_near(name)}")
     if missing := [name for name in PAPER_NAMES if name not in table]:
         raise DesignError(f"designs: lack {', '.join(missing)}; add them")
-    given = [table[name] if name in table else DEFAULTS[name] for name in NAMES]
+    names = ALL_NAMES if any(name in table for name in KNOT_NAMES) else NAMES
+    given = [table[name] if name in table else ALL_DEFAULTS[name] for name in names]
     try:
         columns = np.broadcast_arrays(*(np.atleast_1d(np.asarray(v, dtype=np.float64)) for v in given))
         values = np.column_stack(columns)
@@ -211,7 +212,7 @@ def _of_columns(table: "Mapping[str, Any] | DataFrame") -> Given:
 
 
 def _near(name: object) -> str:
-    for known in (PLAIN_NAMES, _known()):
+    for known in (NAMES, _known()):
         if near := difflib.get_close_matches(str(name), known, n=1):
             return f"did you mean {near[0]!r}?"
     return "correct the name, or drop it"

@@ -16,7 +16,7 @@ from pareto_monoped.actuator.search import map_of
 from pareto_monoped.api.given import one_design, own_calibration, renamed, with_motors
 from pareto_monoped.compute.chunks import cores
 from pareto_monoped.definition.given import count_of
-from pareto_monoped.design import CONTROL, DEFAULT_RULES, PAPER_MOTOR, Design, RuleSet, columns, table_of
+from pareto_monoped.design import DEFAULT_RULES, PAPER_MOTOR, Design, RuleSet, control_of, table_of
 from pareto_monoped.errors import CalibrationError, DesignError, MotorError, complaint
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.calibration import load_calibration as calibration_of
@@ -274,7 +274,7 @@ def trace(
     if one["status"][0] in ("bad_input", "no_gearbox", "cannot_stand"):
         raise DesignError(f"design: has no jump to trace ({one['reason'][0]}); change it")
     robots = robot_arrays(values, maps, model.mass)
-    return pd.DataFrame(trace_of(robots, columns(values, CONTROL), model))
+    return pd.DataFrame(trace_of(robots, control_of(values), model))
 
 
 def calibrated(calibration: AnyCalibration, rules: RuleSet | None) -> tuple[Calibration, RuleSet]:

@@ -12,7 +12,7 @@ import numpy as np
 from pareto_monoped.api.given import number_of, numbers_of, table_of, trial_of
 from pareto_monoped.api.jumps import StrPath
 from pareto_monoped.definition.given import as_list, count_of
-from pareto_monoped.design import DEFAULTS, NAMES, Design
+from pareto_monoped.design import ALL_NAMES, Design
 from pareto_monoped.errors import DesignError, InputError, SelectionError, StudyError, complaint
 from pareto_monoped.measures import is_own, near_measures
 from pareto_monoped.pareto import selectors
@@ -189,7 +189,7 @@ class StoredStudy:
         Raises:
             SelectionError: no trial has this number.
         """
-        return Design.from_array([self._row(trial).get(name, DEFAULTS.get(name)) for name in NAMES])
+        return Design(**{name: row[name] for name in ALL_NAMES if name in (row := self._row(trial))})
 
     def motors(self, trial: int) -> tuple[str, str]:
         """Return names of the motors of a trial's hip and knee, for ``simulate`` and ``build_robot``.

@@ -13,15 +13,16 @@ from pareto_monoped.cli.options import CSV_FILE, Local, chosen_motors, force_opt
 from pareto_monoped.cli.terminal import echo, new_console, note
 from pareto_monoped.cli.watching import require_what_shows, view_jump, write_films
 from pareto_monoped.design import (
+    ALL_NAMES,
     DEFAULT_RULES,
     NAMES,
     PAPER_CASES,
     PAPER_MOTOR,
-    PLAIN_NAMES,
     RULE_SETS,
     VARIABLES,
     Design,
     RuleSet,
+    control_of,
 )
 from pareto_monoped.errors import DesignError, SimulationError, complaint, unknown_name
 from pareto_monoped.jump.calibration_defaults import DEFAULT
@@ -176,8 +177,8 @@ def _design(case: str, changes: tuple[str, ...]) -> Design:
         name = name.strip()
         if not equals:
             raise DesignError(f"--set {change!r}: must be NAME=X; give for example knee_ratio=6.0")
-        if name not in NAMES:
-            raise DesignError(unknown_name("--set name", name, PLAIN_NAMES))
+        if name not in ALL_NAMES:
+            raise DesignError(unknown_name("--set name", name, NAMES))
         try:
             numbers[name] = float(text)
         except ValueError:
@@ -246,7 +247,6 @@ def _add_gear_life(report: dict[str, Any], result: "JumpResult", maps: "JointMap
 
 
 def _audit(design: Design, maps: "JointMaps", calibration: "Calibration") -> dict[str, Any]:
-    from pareto_monoped.design import CONTROL, columns
     from pareto_monoped.jump.audit import audit
     from pareto_monoped.jump.balance import energy_balance
     from pareto_monoped.robot.population import robot_arrays
@@ -257,7 +257,7 @@ def _audit(design: Design, maps: "JointMaps", calibration: "Calibration") -> dic
     first = {
         name: column[0].item() for name, column in audits.items() if name not in ("status", "height_m", "energy_j")
     }
-    balance = energy_balance(robot_arrays(values, maps, calibration.mass), columns(values, CONTROL), calibration)
+    balance = energy_balance(robot_arrays(values, maps, calibration.mass), control_of(values), calibration)
     return {
         **{name: _plain(value) if isinstance(value, float) else value for name, value in first.items()},
         "energy": asdict(balance) | {"joint_work_j": balance.joint_work_j, "residual_j": balance.residual_j},

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from pareto_monoped.cli.terminal import echo
-from pareto_monoped.design import CONSTRAINT_NAMES, PAPER_MOTOR, PLAIN_NAMES
+from pareto_monoped.design import CONSTRAINT_NAMES, NAMES, PAPER_MOTOR
 from pareto_monoped.errors import DatabaseError, InputError, ParetoMonopedError, complaint
 from pareto_monoped.storage.address import is_address
 from pareto_monoped.storage.place import place_of
@@ -134,7 +134,7 @@ def _studies() -> Iterable[str]:
 
 
 def _variables() -> Iterable[str]:
-    return (f"{name}=" for name in PLAIN_NAMES)
+    return (f"{name}=" for name in NAMES)
 
 
 def _measures() -> Iterable[str]:

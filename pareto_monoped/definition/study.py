@@ -38,7 +38,7 @@ from pareto_monoped.definition.variables import (
     text_of,
     variables_of,
 )
-from pareto_monoped.design import DEFAULTS, NAMES, RuleSet
+from pareto_monoped.design import ALL_DEFAULTS, ALL_NAMES, KNOT_NAMES, NAMES, RuleSet
 from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION, is_stand, rules_for, strength_for
 from pareto_monoped.jump.laws import PAPER_LAW, Law, law_of
@@ -175,22 +175,27 @@ class Study:
         return {name: self.constraints.value(f"min_{name}") or LEAST_SAFETY for name in GROUP_MEASURES.values()}
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the columns of its designs: ``NAMES``, or ``ALL_NAMES`` under a torque profile."""
+        return ALL_NAMES if KNOT_NAMES[-1] in self.variables else NAMES
+
+    @property
     def free(self) -> tuple[str, ...]:
-        """Names of the free variables, in the order of ``NAMES``."""
-        return tuple(name for name in NAMES if isinstance(self.variables[name], Bounds))
+        """Names of the free variables, in the order of ``names``."""
+        return tuple(name for name in self.names if isinstance(self.variables[name], Bounds))
 
     @property
     def lower(self) -> NDArray[np.float64]:
-        """Lower bound of each variable, or its fixed value; in the order of ``NAMES``."""
+        """Lower bound of each variable, or its fixed value; in the order of ``names``."""
         return np.array([v.lower if isinstance(v, Bounds) else v for v in self._ordered()])
 
     @property
     def upper(self) -> NDArray[np.float64]:
-        """Upper bound of each variable, or its fixed value; in the order of ``NAMES``."""
+        """Upper bound of each variable, or its fixed value; in the order of ``names``."""
         return np.array([v.upper if isinstance(v, Bounds) else v for v in self._ordered()])
 
     def _ordered(self) -> list[Bounds | float]:
-        return [self.variables[name] for name in NAMES]
+        return [self.variables[name] for name in self.names]
 
     def as_dict(self) -> dict[str, Any]:
         """Return the study as plain values in the form of its file; ``study_from_dict`` reads it back.
@@ -211,8 +216,8 @@ class Study:
             plain["controller"] = self.controller.as_dict()
         plain["variables"] = {
             name: asdict(v) if isinstance(v, Bounds) else v
-            for name, v in zip(NAMES, self._ordered(), strict=True)
-            if v != DEFAULTS.get(name)
+            for name, v in zip(self.names, self._ordered(), strict=True)
+            if v != ALL_DEFAULTS.get(name)
         }
         plain["objectives"] = stored_objectives(self.objectives)
         plain["constraints"] = self.constraints.as_dict()

@@ -21,7 +21,7 @@ from pareto_monoped.definition.algorithms import (
 from pareto_monoped.definition.given import as_plain
 from pareto_monoped.definition.goals import flattened
 from pareto_monoped.definition.variables import MOTOR_KEYS, number_of
-from pareto_monoped.design import NAMES, PLAIN_NAMES, RuleSet
+from pareto_monoped.design import ALL_NAMES, NAMES, RuleSet
 from pareto_monoped.errors import StudyError, unknown_name
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, ReferencePoint
 
@@ -154,8 +154,8 @@ def algorithm_of(file: StudyFile, corner: ReferencePoint, source: str) -> Algori
     settings: AlgorithmSettings = checked(kind, table, source=f"{source}, table [algorithm]", error=StudyError)
     if isinstance(settings, WeightedSettings):
         for key, value in settings.start.items():
-            if key not in NAMES:
-                raise StudyError(f"{source}: {unknown_name('variable in algorithm.start', key, PLAIN_NAMES)}")
+            if key not in ALL_NAMES:
+                raise StudyError(f"{source}: {unknown_name('variable in algorithm.start', key, NAMES)}")
             number_of(f"{source}: algorithm.start.{key}", key, value)
         _check_weighted(file, corner, source)
     return settings

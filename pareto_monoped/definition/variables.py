@@ -7,6 +7,7 @@ from itertools import product
 from typing import Any
 
 from pareto_monoped.design import (
+    ALL_NAMES,
     KNOT_NAMES,
     KNOTS,
     LENGTHS,
@@ -14,7 +15,6 @@ from pareto_monoped.design import (
     PAPER_CASES,
     PAPER_CONTROL,
     PAPER_MOTOR,
-    PLAIN_NAMES,
     VARIABLES,
 )
 from pareto_monoped.errors import StudyError, complaint, unknown_name
@@ -49,7 +49,7 @@ def variables_of(
         if name not in known and not (name in PAPER_CONTROL and value == 0.0):  # which a stored study has
             raise StudyError(f"{source}: {unknown_name('variable', name, known)}")
     chosen: dict[str, Bounds | float] = {}
-    for variable in (*VARIABLES, *KNOTS):
+    for variable in VARIABLES if law == PAPER_LAW else (*VARIABLES, *KNOTS):
         value = given.get(variable.name)
         if variable.name not in known:
             chosen[variable.name] = 0.0 if variable.default is None else variable.default
@@ -79,7 +79,7 @@ def variables_of(
 def names_under(law: Law) -> tuple[str, ...]:
     """Return the names of the variables that a study has under a law: those of the hardware, and the law's own."""
     own = [variable.name for variable in law.variables]
-    return tuple(name for name in NAMES if name in own or (name in PLAIN_NAMES and name not in OF_VIRTUAL_LEG))
+    return tuple(name for name in ALL_NAMES if name in own or (name in NAMES and name not in OF_VIRTUAL_LEG))
 
 
 def _variable(name: str, given: Any, source: str) -> Bounds | float:

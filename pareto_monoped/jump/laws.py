@@ -15,7 +15,7 @@ import numpy as np
 from pydantic import Field
 
 from pareto_monoped.config import Strict, checked
-from pareto_monoped.design import KNOT_NAMES, KNOTS, MOST_KNOTS, PAPER_CONTROL, PLAIN_NAMES, VARIABLES, Floats, Variable
+from pareto_monoped.design import KNOT_NAMES, KNOTS, MOST_KNOTS, NAMES, PAPER_CONTROL, VARIABLES, Floats, Variable
 from pareto_monoped.errors import DesignError, InputError, unknown_name
 from pareto_monoped.jump.controller_record import OVER_LENGTH, OVER_TIME, OWN
 
@@ -218,7 +218,7 @@ class OwnLaw(Law):
     @property
     def slots(self) -> dict[str, str]:
         """Each own variable -> the name of the variable of a profile in whose place it travels."""
-        if len(self.own_variables) > len(KNOT_NAMES) or set(self.own_variables) & set(PLAIN_NAMES):
+        if len(self.own_variables) > len(KNOT_NAMES) or set(self.own_variables) & set(NAMES):
             raise DesignError(
                 f"controller {type(self).__name__}: own_variables must be at most {len(KNOT_NAMES)} names that no "
                 "other variable has; correct them"

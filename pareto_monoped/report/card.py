@@ -192,7 +192,7 @@ def _body_masses_kg(data: StudyData, designs: pd.DataFrame) -> NDArray[np.float6
 
 def _floor_j(data: StudyData) -> list[float]:
     """Return the least energy of every design that jumped, at ``FLOOR_HEIGHTS_M``, rounded down."""
-    needed = data.trials[[name for name in (*NAMES, *MOTOR_KEYS) if name in data.trials]]
+    needed = data.trials[[name for name in (*data.study.names, *MOTOR_KEYS) if name in data.trials]]
     jumped = needed[data.trials["height_m"].notna()]
     least = np.full(len(FLOOR_HEIGHTS_M), np.inf)
     for kit, rows in data.kit_rows(jumped):

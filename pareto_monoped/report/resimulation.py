@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pareto_monoped.design import CONTROL, PAPER_CASES, columns, designs_of
+from pareto_monoped.design import PAPER_CASES, control_of, designs_of
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.report.packing import number
 from pareto_monoped.report.schema import Case
@@ -105,7 +105,7 @@ def jumps_of(
 
     if len(designs) == 0:
         return []
-    robots, control = robot_arrays(designs, maps, calibration.mass), columns(designs, CONTROL)
+    robots, control = robot_arrays(designs, maps, calibration.mass), control_of(designs)
     return recordings(robots, control, calibration, frames, workers)
 
 

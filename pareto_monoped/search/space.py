@@ -135,7 +135,7 @@ class KitCoordinates(Coordinates):
 
     @property
     def _free(self) -> NDArray[np.bool_]:
-        return np.array([name in self.study.free for name in NAMES])
+        return np.array([name in self.study.free for name in self.study.names])
 
     @property
     def _ratios(self) -> dict[str, Floats]:
@@ -246,7 +246,7 @@ class MotorCoordinates(Coordinates):
         positions = np.array(values[:, : len(space.names) - len(space.choices)])
         for name in space.listed:
             positions[:, space.names.index(name)] = space.gear_of(name, values)
-        designs = np.empty((len(values), len(NAMES)))
+        designs = np.empty((len(values), len(self.study.names)))
         for k in np.unique(kits).tolist():
             designs[kits == k] = self.parts[k].designs(positions[kits == k])
         return designs

@@ -16,26 +16,23 @@ from pareto_monoped.definition.algorithms import DEFAULT_ALGORITHM
 from pareto_monoped.definition.study import Study
 from pareto_monoped.definition.variables import Bounds
 from pareto_monoped.design import (
-    CONTROL,
-    DEFAULTS,
-    KNOT_NAMES,
+    ALL_DEFAULTS,
     LOWER,
     NAMES,
     PAPER_CASES,
     PAPER_CONTROL,
-    PLAIN_NAMES,
     UPPER,
     VARIABLES,
     Floats,
-    columns,
     complete,
+    control_of,
 )
 from pareto_monoped.errors import CalibrationError, StudyError, complaint
 from pareto_monoped.jump.calibration import Calibration, calibration_values, load_calibration
 from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION
 from pareto_monoped.jump.engines import told_profiles
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
-from pareto_monoped.jump.laws import PAPER_LAW, Profile
+from pareto_monoped.jump.laws import OF_VIRTUAL_LEG, PAPER_LAW, Profile
 from pareto_monoped.jump.shared import evaluator_of
 from pareto_monoped.leg.thigh_outline import require_leg
 from pareto_monoped.pareto.front import front_mask
@@ -101,10 +98,9 @@ def _begun(study: Study, evaluator: Evaluator) -> Floats:
     evenly spread, then what violates its limits least.
     """
     assert isinstance(study.controller, Profile)
-    kept = {name: value for name, value in study.variables.items() if name in PLAIN_NAMES}
+    kept = {name: value for name, value in study.variables.items() if name in NAMES}
     gains = {v.name: Bounds(lower=v.lower, upper=v.upper) for v in VARIABLES if v.name in PAPER_CONTROL}
-    unused = {name: DEFAULTS[name] for name in KNOT_NAMES}
-    first = replace(study, controller=PAPER_LAW, algorithm=DEFAULT_ALGORITHM, variables={**kept, **gains, **unused})
+    first = replace(study, controller=PAPER_LAW, algorithm=DEFAULT_ALGORITHM, variables=kept | gains)
     maps, model = evaluator.actuator_maps[0], evaluator.calibration.under(PAPER_LAW)
     virtual, where = Evaluator(maps, model, evaluator.workers), searched_coordinates(first, [maps])
     algorithm, found = make_algorithm(first, where), np.zeros((0, len(NAMES) + 1 + len(first.objectives.names)))
@@ -122,9 +118,11 @@ def _begun(study: Study, evaluator: Evaluator) -> Floats:
     rows = np.concatenate((spread, others))[:_BEGUN].astype(int)
     designs = found[rows, : len(NAMES)]
     robots = robot_arrays(designs, maps, model.mass)
-    profiles = told_profiles(robots, columns(designs, CONTROL), model, study.controller)
-    designs[:, [NAMES.index(name) for name in KNOT_NAMES]] = profiles
-    return designs
+    profiles = told_profiles(robots, control_of(designs), model, study.controller)
+    designs[:, [NAMES.index(name) for name in OF_VIRTUAL_LEG]] = [
+        ALL_DEFAULTS.get(name, 0.0) for name in OF_VIRTUAL_LEG
+    ]
+    return np.hstack((designs, profiles))
 
 
 def evaluation_of(study: Study, evaluator: Evaluator) -> Evaluate:

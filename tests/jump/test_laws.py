@@ -14,7 +14,7 @@ import pareto_monoped as pm
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.write.mjcf import jump_record
 from pareto_monoped.cli import cli
-from pareto_monoped.design import CONTROL, KNOT_NAMES, PAPER_CASES, PLAIN_NAMES, columns, table_of
+from pareto_monoped.design import KNOT_NAMES, NAMES, PAPER_CASES, control_of, table_of
 from pareto_monoped.errors import DesignError, ParetoMonopedError
 from pareto_monoped.jump.calibration import calibration_of, calibration_values, load_calibration
 from pareto_monoped.jump.document import mjcf
@@ -145,10 +145,10 @@ def test_torques_keep_the_motors_limits_and_end_with_the_foot_in_the_air():
 def test_a_design_keeps_its_knots_in_every_form():
     assert pm.Design.from_array(PUSH.as_array()) == PUSH == pm.Design(**PUSH.as_dict())
     assert PUSH.replace({"hip_knot_1": 0.5}).profile[1] == 0.5
-    assert set(PLAIN_NAMES) <= set(table_of(PUSH.as_array()[None]))
+    assert set(NAMES) <= set(table_of(PUSH.as_array()[None]))
     assert "profile" not in repr(C)
     assert not set(KNOT_NAMES) & set(table_of(C.as_array()[None]))
     robots = robot_arrays(PUSH.as_array(), map_for("VT8020"))
-    given = columns(PUSH.as_array()[None], CONTROL)
+    given = control_of(PUSH.as_array()[None])
     model = load_calibration("reference").under(law(PROFILES[0]))
     assert evaluate_robots(robots, given, model).ok[0]

@@ -8,7 +8,7 @@ from importlib import resources
 import numpy as np
 
 from pareto_monoped.cad.write.meshes import Collider, Visual, numbers
-from pareto_monoped.design import CONTROL, PAPER_CONTROL, Design, columns
+from pareto_monoped.design import PAPER_CONTROL, Design, control_of
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import evaluate_robots
 from pareto_monoped.jump.population import first_records
@@ -85,7 +85,7 @@ def jump_record(arrays: RobotArrays, design: Design, calibration: Calibration) -
     """Return the content of ``jump.json``, or of ``jump_stand.json`` under a calibration with a stand."""
     from pareto_monoped.jump.controller_record import TOUCH_M
 
-    control = columns(design.as_array()[None], CONTROL)
+    control = control_of(design.as_array()[None])
     record = first_records(arrays, control, calibration)[0]
     jump = evaluate_robots(arrays, control, calibration.by("mujoco"))
     numbers = {name: _finite(record[name]) for name in _NUMBERS}
