@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from scipy.linalg import block_diag
 
 from pareto_monoped.actuator.ratiomap import JointMaps
 from pareto_monoped.compute.chunks import cores
@@ -42,10 +43,11 @@ from pareto_monoped.strength.groups import REQUIRED_MEASURES
 LAW = TorqueOverTime(kind="torque_over_time", knots=MOST_KNOTS)
 """What is searched: cubics through as many knots as a profile can have."""
 JUMPS = 3000
-"""Jumps of each search. Our own choice: twice as many save less than 1 percent more (docs/limit.md)."""
+"""Jumps of each of the four searches of a design. Our own choice: 10 to 20 s per design on two cores."""
 MOST_DESIGNS = 12
 """Designs of a front, thinned evenly, if none are named. Our own choice: some minutes on two cores."""
-_POPULATION, _SIGMA = 20, 0.2
+_POPULATION, _FEW = 12, 6
+_SIGMA, _FINE_SIGMA = 0.2, 0.08
 _TIMES_S = (0.05, 1.0)
 _STEEP = 8.0  # energy that a missing height costs, in units of what the virtual leg needs per height
 _MARGIN_M = 1e-4  # searched above the height that is asked for, so that the end of a search lies on the right side
@@ -170,21 +172,33 @@ class _Goal:
 
 
 def _searched(hardware: _Hardware, goal: _Goal, start: Floats, jumps: int, seed: Sequence[int]) -> tuple[float, Floats]:
-    """Return the best value of a search, infinite if no jump counts, and its point."""
-    strategy = cma_es(start, _SIGMA, _POPULATION, np.random.default_rng(seed))
-    point = start
-    _, (least, *_) = goal.cost(hardware(start[None]))
-    for _ in range(jumps // _POPULATION):
-        asked = strategy.ask()
-        points = np.clip(np.array(asked), 0.0, 1.0)
-        cost, values = goal.cost(hardware(points))
-        strategy.tell(asked, cost.tolist())
-        k = int(values.argmin())
-        if values[k] < least:
-            point, least = points[k], values[k]
-        if strategy.stop():
-            break
+    """Return the best value of a search, infinite if no jump counts, and its point, shape (25,).
+
+    Half of the jumps move few knots, which lead to wider changes, between which cubics lie; then every knot moves.
+    """
+    wide = _widened(_FEW)
+    point, (_, (least, *_)) = start, goal.cost(hardware(start[None]))
+    stages = ((wide, np.linalg.lstsq(wide, start, rcond=None)[0], _SIGMA), (np.eye(len(start)), None, _FINE_SIGMA))
+    for stage, (matrix, first, sigma) in enumerate(stages):
+        begin = np.clip(point if first is None else first, 0.0, 1.0)
+        strategy = cma_es(begin, sigma, _POPULATION, np.random.default_rng((*seed, stage)))
+        for _ in range(jumps // (len(stages) * _POPULATION)):
+            asked = strategy.ask()
+            points = np.clip(np.array(asked) @ matrix.T, 0.0, 1.0)
+            cost, values = goal.cost(hardware(points))
+            strategy.tell(asked, cost.tolist())
+            k = int(values.argmin())
+            if values[k] < least:
+                point, least = points[k], values[k]
+            if strategy.stop():
+                break
     return float(least), point
+
+
+def _widened(knots: int) -> Floats:
+    """Return the matrix that makes points with all knots of those with few, shape (25, 1 + 2 knots)."""
+    block = TorqueOverTime(kind="torque_over_time", knots=knots).basis(np.linspace(0.0, 1.0, LAW.knots))
+    return np.asarray(block_diag(1.0, block, block))
 
 
 def limit_of(
@@ -214,13 +228,13 @@ def limit_of(
     steep = _STEEP * energy_j / max(height_m - float(design[NAMES.index("start_height_m")]), 0.05)
     found: dict[str, Reached | None] = {}
     for number, (name, at_least_m) in enumerate((("least", height_m), ("greatest", None))):
-        value, point = energy_j if at_least_m else -height_m, None
-        start = hardware.told
-        results = {}
+        value, start = energy_j if at_least_m else -height_m, hardware.told
+        results: dict[bool, tuple[float, Floats | None]] = {}
         for held in (False, True):
             goal = _Goal(at_least_m=at_least_m, held=held, energy=energy, steep_j_per_m=steep)
-            least, start = _searched(hardware, goal, start, jumps, (seed, number, held))
-            results[held] = (least, start)
+            results[held] = least, reached = _searched(hardware, goal, start, jumps, (seed, number, held))
+            if at_least_m:  # the greatest heights with and without strength have little in common
+                start = reached
             own_counts = not held or goal.missed(own)[0] == 0.0
             if own_counts and value <= least:
                 results[held] = (value, None)

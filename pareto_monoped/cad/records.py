@@ -221,7 +221,8 @@ def _parsed(path: Path) -> Mapping[str, Any]:
 
 def _design(searched: Mapping[str, Any]) -> Design:
     """Return the design of a record; optional variables that it does not name have their defaults."""
-    return Design(**{n: _finite(DEFAULTS | dict(searched), n) for n in ALL_NAMES if n in NAMES or n in searched})
+    names: Any = {n: _finite(DEFAULTS | dict(searched), n) for n in ALL_NAMES if n in NAMES or n in searched}
+    return Design(**names)
 
 
 def _rules(name: Any) -> RuleSet:

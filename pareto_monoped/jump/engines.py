@@ -98,9 +98,7 @@ def told_profiles(
     The columns have the order of ``KNOT_NAMES``. Knots are those of the least squares of torques from the start to
     lift-off, each taken back by the delay; the push time ends there, too.
     """
-    from pareto_monoped.jump.torques import between
-
-    model, unit, smooth = calibration.under(PAPER_LAW), np.eye(law.knots), law.between == "cubic"
+    model = calibration.under(PAPER_LAW)
     population = population_of(robots, control, start_pose(robots, model), model, threads)
     found = np.zeros((len(robots), len(KNOT_NAMES)))
     late = round(model.simulation.delay_s / model.simulation.timestep_s)
@@ -108,12 +106,11 @@ def told_profiles(
         record = population.records[row]
         end = max(int(record["lift_off_step"]) - 1, late + 2)
         told = seen[late:end, 12:14] / record["torque_limit_n_m"]
-        time_s = model.simulation.timestep_s * np.arange(len(told))
+        time_s = np.arange(len(told), dtype=np.float64) * model.simulation.timestep_s
         directions = seen[: len(told), 8:12] * np.repeat([record["thigh_length_m"], record["shank_length_m"]], 2)
         leg_m = np.hypot(directions[:, 0] + directions[:, 2], directions[:, 1] + directions[:, 3])
         straight_m = float(record["thigh_length_m"] + record["shank_length_m"])
-        shares = law.shares(time_s, leg_m, straight_m)
-        basis = np.array([[between(share, one, law.knots, smooth) for one in unit] for share in shares])
+        basis = law.basis(law.shares(time_s, np.asarray(leg_m), straight_m))
         knots = np.clip(np.linalg.lstsq(basis, told, rcond=None)[0], -1.0, 1.0)
         found[row, 0] = time_s[-1]
         for joint in range(2):

@@ -103,6 +103,13 @@ class Profile(Law, Strict):
         """Return the law as the table of a study file."""
         return asdict(self)
 
+    def basis(self, shares: Floats) -> Floats:
+        """Return the matrix that makes torques of knots: at n shares of the way, shape (n, knots)."""
+        from pareto_monoped.jump.torques import between
+
+        unit, smooth = np.eye(self.knots), self.between == "cubic"
+        return np.array([[between(share, one, self.knots, smooth) for one in unit] for share in shares])
+
     @abstractmethod
     def shares(self, time_s: Floats, leg_m: Floats, straight_m: float) -> Floats:
         """Return how far states of a push, from its first to its last, are from the first knot to the last one."""
@@ -127,7 +134,7 @@ class TorqueOverTime(Profile):
 
     def shares(self, time_s: Floats, leg_m: Floats, straight_m: float) -> Floats:
         """Return the shares of the push time."""
-        return time_s / time_s[-1]
+        return np.asarray(time_s / time_s[-1])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -170,12 +177,8 @@ def law_of(given: Any, *, source: str, error: type[InputError] = InputError) -> 
     kind = table.get("kind") if isinstance(table, Mapping) else table
     if kind not in KINDS:
         raise error(f"{source}: {unknown_name('controller', kind, KINDS)}")
-    law: Law = checked(
-        _LAWS[kind],
-        table,  # type: ignore[arg-type]  # one of several classes
-        source=f"{source}, table [controller]",
-        error=error,
-    )
+    known: Any = _LAWS[kind]  # each of another class
+    law: Law = checked(known, table, source=f"{source}, table [controller]", error=error)
     return law
 
 

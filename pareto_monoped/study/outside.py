@@ -148,7 +148,7 @@ class OptunaObjective:
         for name, missed in zip(self._jump.constraint_names, judged.constraints[0].tolist(), strict=True):
             trial.set_constraint(name, missed)
         trial.set_user_attr("status", str(table["status"][0]))
-        for name in (*self._jump.study.names, *MEASURE_NAMES):
+        for name in (one for one in (*ALL_NAMES, *MEASURE_NAMES) if one in table):
             value = float(table[name][0])
             trial.set_user_attr(name, value if np.isfinite(value) else None)
         if judged.failed[0]:
