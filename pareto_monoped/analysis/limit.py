@@ -123,9 +123,7 @@ class _Hardware:
         self.jumps = 0
         self.own = Evaluator(maps, calibration)(design)
         robots = robot_arrays(design, maps, calibration.mass)
-        profile = told_profiles(robots, control_of(design[None]), calibration, LAW)[0]
-        low, high = _TIMES_S
-        self.told = np.clip(np.append((profile[0] - low) / (high - low), 0.5 * (profile[1:] + 1.0)), 0.0, 1.0)
+        self.told = _point_of(told_profiles(robots, control_of(design[None]), calibration, LAW)[0])
         self.floor_j = float(least_energy_j(robots, calibration, self.own.height_m)[0])
 
     def designs(self, points: Floats) -> Floats:
@@ -138,6 +136,12 @@ class _Hardware:
     def __call__(self, points: Floats) -> Evaluations:
         self.jumps += len(points)
         return self._evaluator(self.designs(points))
+
+
+def _point_of(profile: Floats) -> Floats:
+    """Return the point of the unit cube whose profile is nearest."""
+    low, high = _TIMES_S
+    return np.clip(np.append((profile[0] - low) / (high - low), 0.5 * (profile[1:] + 1.0)), 0.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
