@@ -1,7 +1,7 @@
 """The best torque found for four robots of an earlier version, under the calibration ``reference-3``.
 
 ``benchmarks/data/limit_robots.json`` has the robots with the gearboxes of their time: those of the least energy at two
-heights, the paper's C, and the highest of the main job's front. The search is that of ``pareto-monoped limit`` without
+heights, of the least energy from the battery there, the paper's C, and the highest of the main job's front. The search is that of ``pareto-monoped limit`` without
 strength; the jumps are MuJoCo's, because ``reference-3`` is none for the compiled engine.
 
     python benchmarks/limit_reference_3.py [--jumps N] [--seed N]
@@ -64,29 +64,27 @@ def main() -> None:
     robots = stored_robots(designs)
     print("| design | height, m | energy, J | best torque, J | gap, % | half step, % | quarter step, % |")
     print("|---|---|---|---|---|---|---|")
-    heights = []
-    for k, name in enumerate(STORED["names"]):
-        one = take(robots, np.array([k]))
-        for energy in ("energy_j", "electrical_energy_j"):
-            hardware = Stored(designs[k], one, calibration, energy)
-            height_m, own_j = float(hardware.own.height_m[0]), float(hardware.own.of(energy)[0])
-            goals = [height_m] if k < 3 else [None] * (energy == "energy_j")
-            for at_least_m in goals:
-                steep = limit._STEEP * own_j / (height_m - 0.5)
-                goal = limit._Goal(at_least_m=at_least_m, held=False, energy=energy, steep_j_per_m=steep)
-                best, point = limit._searched(hardware, goal, hardware.told, given.jumps, (given.seed, k))
-                steps = [hardware.jumps_of(point[None], finer(hardware.calibration, n)) for n in (1, 2, 4)]
-                if at_least_m is None:
-                    heights += [f"{jump.height_m[0]:.3f} m for {jump.energy_j[0]:.1f} J" for jump in steps]
-                    continue
-                values = [float(jump.of(energy)[0]) for jump in steps]
-                title = name if energy == "energy_j" else f"{name}, battery"
-                changes = " | ".join(f"{100.0 * (value / best - 1.0):+.3f}" for value in values[1:])
-                gap = 100.0 * (1.0 - best / own_j)
-                print(f"| {title} | {height_m:.3f} | {own_j:.2f} | {best:.2f} | {gap:.1f} | {changes} |", flush=True)
+    highest = ""
+    for k, (name, energy) in enumerate(zip(STORED["names"], STORED["energies"], strict=True)):
+        one, high = take(robots, np.array([k])), energy == "height_m"
+        hardware = Stored(designs[k], one, calibration, "energy_j" if high else energy)
+        height_m, own_j = float(hardware.own.height_m[0]), float(hardware.own.of(hardware.energy)[0])
+        steep = limit._STEEP * own_j / (height_m - 0.5)
+        at_least_m = None if high else height_m
+        goal = limit._Goal(at_least_m=at_least_m, held=False, energy=hardware.energy, steep_j_per_m=steep)
+        best, point = limit._searched(hardware, goal, hardware.told, given.jumps, (given.seed, k))
+        steps = [hardware.jumps_of(point[None], finer(hardware.calibration, n)) for n in (1, 2, 4)]
+        if high:
+            found = " | ".join(f"{jump.height_m[0]:.3f} m for {jump.energy_j[0]:.1f} J" for jump in steps)
+            highest = f"| {name} | {height_m:.3f} m | {found} |"
+            continue
+        values = [float(jump.of(energy)[0]) for jump in steps]
+        changes = " | ".join(f"{100.0 * (value / best - 1.0):+.3f}" for value in values[1:])
+        gap = 100.0 * (1.0 - best / own_j)
+        print(f"| {name} | {height_m:.3f} | {own_j:.2f} | {best:.2f} | {gap:.1f} | {changes} |", flush=True)
     print("\n| greatest height | virtual leg | best torque | half step | quarter step |")
     print("|---|---|---|---|---|")
-    print(f"| {STORED['names'][3]} | {STORED['height_m'][3]:.3f} m | {' | '.join(heights)} |")
+    print(highest)
 
 
 if __name__ == "__main__":

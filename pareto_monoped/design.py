@@ -270,7 +270,7 @@ def _checked(kind: type[_T]) -> type[_T]:
             raise DesignError(f"design: lacks {', '.join(missing)}; add them")
         numbers = {name: _number(name, value) for name, value in values.items()}
         knots = tuple(numbers.pop(name, ALL_DEFAULTS[name]) for name in KNOT_NAMES) if len(values) > len(NAMES) else ()
-        made(self, **numbers, profile=knots)  # type: ignore[call-arg]
+        made(self, **numbers, profile=knots)  # type: ignore[call-arg]  # of the class itself
 
     kind.__init__ = checked  # type: ignore[assignment, method-assign]  # replaced on purpose
     return kind

@@ -141,7 +141,8 @@ class _Hardware:
 def _point_of(profile: Floats) -> Floats:
     """Return the point of the unit cube whose profile is nearest."""
     low, high = _TIMES_S
-    return np.clip(np.append((profile[0] - low) / (high - low), 0.5 * (profile[1:] + 1.0)), 0.0, 1.0)
+    point = np.append((profile[0] - low) / (high - low), 0.5 * (profile[1:] + 1.0))
+    return np.asarray(np.clip(point, 0.0, 1.0))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -72,8 +72,8 @@ _VARIABLES = "\n".join(
 )
 @click.option(
     "--controller",
-    metavar="KIND[:KNOTS]",
-    help="What the motors are told, such as torque_over_time:8.  [default: virtual_leg]",
+    metavar="NAME",
+    help="virtual_leg, or a profile with its knots: torque_over_time:8.  [default: the calibration's]",
 )
 @motor_options()
 @click.option("--rules", type=click.Choice(RULE_SETS), help=f"Rules of the gearboxes.  [default: {DEFAULT_RULES}]")

@@ -61,7 +61,7 @@ def limit(
     workers: int | None,
     as_json: bool,
 ) -> None:
-    """Search what the hardware of designs reaches with the best torque.
+    """Find what the best torque could do.
 
     For designs of the front: the least energy at a design's height, and the greatest height, of motor torques free over
     time within the motors' limits; with and without overloading parts. What is found is reached by a jump; less energy

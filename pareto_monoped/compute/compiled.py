@@ -24,7 +24,7 @@ def c_function(signature: Any, function: Callable[..., object]) -> Any:
     return _kept(lambda **options: numba.cfunc(signature, **options), function).ctypes
 
 
-@numba.extending.intrinsic  # type: ignore[untyped-decorator]
+@numba.extending.intrinsic  # type: ignore[untyped-decorator]  # numba has no types
 def call_address(_: Any, address: Any, first: Any, second: Any, third: Any) -> Any:
     """Call the C function at an address with three pointers to float64; it returns nothing."""
     pointer = numba.types.CPointer(numba.types.float64)

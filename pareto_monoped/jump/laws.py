@@ -257,7 +257,7 @@ def _address(torques: Callable[..., Any]) -> float:
     law, count = numba.njit(error_model="numpy")(torques), len(KNOT_NAMES)
     pointer = numba.types.CPointer(numba.types.float64)
 
-    @numba.cfunc(numba.types.void(pointer, pointer, pointer), error_model="numpy")  # type: ignore[untyped-decorator]
+    @numba.cfunc(numba.types.void(pointer, pointer, pointer), error_model="numpy")  # type: ignore[untyped-decorator]  # likewise
     def act(state: Any, variables: Any, torque: Any) -> None:
         moment = numba.carray(state, (7,)).view(state_type)[0]
         found = law(moment, numba.carray(variables, (count,)))
