@@ -284,6 +284,49 @@ class AuditMeasures:
 
 AUDIT_MEASURES: tuple[Measure, ...] = _described(AuditMeasures)  #: In the order of the fields of ``jump.audit.Audits``.
 
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LandingMeasures:
+    """What n landings measure, each of shape (n,); NaN without a landing.
+
+    ``status`` is one of ``jump.landing.STATUSES``, and ``landing_ok`` says whether the hardware survives.
+    """
+
+    # fmt: off
+    status: NDArray[np.str_]
+    landing_ok: NDArray[np.bool_]
+    landing_fall_m: Annotated[Floats, _row("m", 3, "fall", "fall of the base from the apex to touchdown")]
+    landing_time_s: Annotated[Floats, _less("s", 3, "time to rest", "time from touchdown until the robot stands still")]
+    landing_peak_gear_torque_hip_n_m: Annotated[Floats, _less("N m", 1, "peak gear torque, hip",
+        "largest torque that the hip's gearbox transmits from apex to rest")]
+    landing_peak_gear_torque_knee_n_m: Annotated[Floats, _less("N m", 1, "peak gear torque, knee",
+        "largest torque that the knee's gearbox transmits from apex to rest")]
+    landing_peak_chain_tension_n: Annotated[Floats, _less("N", 0, "peak chain tension",
+        "largest pull in the chain from apex to rest")]
+    landing_peak_stop_torque_n_m: Annotated[Floats, _less("N m", 1, "peak torque of an end stop",
+        "largest torque of an end stop from apex to rest")]
+    landing_peak_foot_force_n: Annotated[Floats, _less("N", 0, "peak foot force",
+        "largest force of the floor on the foot from apex to rest")]
+    landing_peak_knee_force_n: Annotated[Floats, _less("N", 0, "peak force at the knee",
+        "largest force between thigh and shank from apex to rest")]
+    landing_energy_j: Annotated[Floats, _less("J", 2, "energy", "positive work of both motors from apex to rest")]
+    landing_absorbed_j: Annotated[Floats, _row("J", 2, "work absorbed by the motors",
+        "work that the joints do on the motors from apex to rest")]
+    landing_joule_heat_j: Annotated[Floats, _less("J", 2, "heat in the windings",
+        "heat in both windings from apex to rest")]
+    landing_electrical_energy_j: Annotated[Floats, _less("J", 2, "energy from the battery",
+        "energy taken from the battery from apex to rest")]
+    landing_returned_j: Annotated[Floats, _row("J", 2, "energy fed back to the bus",
+        "electrical energy that flows back from apex to rest, of which a battery takes its regeneration_share")]
+    landing_safety: Annotated[Floats, _more("1", 2, "least safety over the required one",
+        "least safety factor over the required one of all parts under the loads from apex to rest; holds from 1 up")]
+    # fmt: on
+
+
+LANDING_MEASURES: tuple[Measure, ...] = _described(
+    LandingMeasures
+)  #: In the order of the fields of ``LandingMeasures``.
+
 _COARSE = f"step doubled and {_PERTURBED}"
 
 

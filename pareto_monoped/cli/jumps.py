@@ -91,6 +91,8 @@ _VARIABLES = "\n".join(
     metavar="N",
     help="Films and viewer: N times slower than the jump.",
 )
+@click.option("--landing", "lands", is_flag=True, help="Let the leg land, and rate its parts under that.")
+@click.option("--hops", metavar="N", type=click.IntRange(1, 10_000), help="Land and jump again, N jumps in all.")
 @force_option
 @click.option("--audit", "audited", is_flag=True, help="Numerical audit: energy balance, finer steps, perturbations.")
 def simulate(
@@ -109,6 +111,8 @@ def simulate(
     video: Path | None,
     view: bool,
     slower: float,
+    lands: bool,
+    hops: int | None,
     force: bool,
     audited: bool,
 ) -> None:
@@ -146,6 +150,10 @@ def simulate(
         note(text)
     if audited and result.status == "ok":
         report["audit"] = _audit(design, maps, calibration)
+    if lands and result.status == "ok":
+        report["landing"] = _landing(design, maps, calibration)
+    if hops and result.status == "ok":
+        report["hops"] = _hops(design, maps, calibration, hops)
     if trace:
         _write_trace(trace, result, force=force)
     if model:
@@ -262,6 +270,45 @@ def _audit(design: Design, maps: "JointMaps", calibration: "Calibration") -> dic
         **{name: _plain(value) if isinstance(value, float) else value for name, value in first.items()},
         "energy": asdict(balance) | {"joint_work_j": balance.joint_work_j, "residual_j": balance.residual_j},
     }
+
+
+def _landing(design: Design, maps: "JointMaps", calibration: "Calibration") -> dict[str, Any]:
+    """Return how the leg lands by default, and the parameters of the best landing found with what it leaves."""
+    from pareto_monoped.jump.landing import best_landed, landed
+    from pareto_monoped.measures import LANDING_MEASURES
+
+    values = design.as_array()[None, :]
+    default, best = (function(values, maps, calibration) for function in (landed, best_landed))
+    return {
+        "status": str(default.status[0]),
+        "landing_ok": bool(default.landing_ok[0]),
+        **{one.name: _plain(float(getattr(default, one.name)[0])) for one in LANDING_MEASURES},
+        "best_found": {
+            **asdict(best.landing[0]),
+            "landing_ok": bool(best.landing_ok[0]),
+            "landing_safety": _plain(float(best.landing_safety[0])),
+        },
+    }
+
+
+def _hops(design: Design, maps: "JointMaps", calibration: "Calibration", count: int) -> dict[str, Any]:
+    """Return the last of some hops, and the rate that the windings bear."""
+    from pareto_monoped.jump.landing import hops
+    from pareto_monoped.robot.population import robot_arrays
+
+    values = design.as_array()[None, :]
+    found = hops(robot_arrays(values, maps, calibration.mass), control_of(values), calibration, count)
+    made = len(found.height_m)
+    return {
+        "made": made,
+        "reason": found.reason,
+        "steady_from": found.steady_from,
+        **({name: float(getattr(found, name)[-1]) for name in _OF_LAST} if made else {}),
+        "hops_per_minute": _plain(found.hops_per_minute),
+    }
+
+
+_OF_LAST = ("height_m", "energy_j", "electrical_energy_j", "period_s")
 
 
 def _write_trace(path: Path, result: "JumpResult", *, force: bool) -> None:

@@ -2,7 +2,7 @@
 
 Order of imports, lowest first: calibration_defaults, controller_record, quiet, rebound; laws, torques; calibration;
 controller, end_stops, rail_leg; callback, model; document, planar, variations; gravity, population; engines;
-evaluate, frames; peers, replay, shared, single; balance; audit; screen, table1.
+evaluate, frames; peers, replay, shared, single; landing; balance; audit; screen, table1.
 """
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "evaluate",
     "frames",
     "gravity",
+    "landing",
     "laws",
     "model",
     "peers",

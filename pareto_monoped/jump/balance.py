@@ -16,7 +16,7 @@ from pareto_monoped.jump.end_stops import end_stops, slow_torque_n_m
 from pareto_monoped.jump.model import coordinates, gear_efficiency, joint_places, motor_places, start_pose
 from pareto_monoped.jump.population import Population, prepare, threads_for
 from pareto_monoped.jump.quiet import quiet
-from pareto_monoped.jump.single import Moment, constraint_forces, moments
+from pareto_monoped.jump.single import Moment, Then, constraint_forces, moments
 from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import RobotArrays
 
@@ -26,6 +26,7 @@ class EnergyBalance:
     """Where the work of the motors went, in joules."""
 
     motor_work_j: float  #: of both motors, less what they absorbed
+    driven_j: float  #: the part of it in which they drive
     #: mesh_loss_j, chain_loss_j: lost in the gearboxes and in the chain
     mesh_loss_j: float
     chain_loss_j: float
@@ -64,9 +65,16 @@ class EnergyBalance:
         """What physics leaves open, as a share of the joints' work: the residual with what the integrator loses."""
         return abs(self.residual_j + self.integration_j) / max(abs(self.joint_work_j), 1e-12)
 
+    @property
+    def course_error(self) -> float:
+        """The same as a share of the work with which the motors drive; those of a landing take most of it again."""
+        return abs(self.residual_j + self.integration_j) / max(self.driven_j, 1e-12)
 
-def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibration) -> EnergyBalance:
-    """Return where the energy of the first robot's jump went.
+
+def energy_balance(
+    robots: RobotArrays, control: Floats, calibration: Calibration, then: Then | None = None
+) -> EnergyBalance:
+    """Return where the energy of the first robot's jump went, and of what it goes on with (``single.moments``).
 
     The work of a force in a step is the force times the mean of the speeds before and after the step. With constant
     inertia this is exactly the change of kinetic energy that the force causes in MuJoCo's semi-implicit step. In a
@@ -79,8 +87,9 @@ def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibratio
     mesh, chain = np.zeros(2), np.zeros(2)
     mesh_share = _mesh_share(robots, calibration)
     first: Moment | None = None
+    driven = 0.0
     moved: Floats | float = 0.0
-    for moment in moments(robots, control, calibration):
+    for moment in moments(robots, control, calibration, then):
         first = first or moment
         if moment.last:
             break
@@ -88,6 +97,7 @@ def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibratio
         motor = np.array(moment.record["motor_torque_n_m"]) * moved[motors]
         lost = motor - moment.data.ctrl[:2] * moved[motors]
         work["motor"] += float(motor.sum())
+        driven += float(np.maximum(motor, 0.0).sum())
         mesh += mesh_share * lost
         chain += (1.0 - mesh_share) * lost
         mean = 0.5 * (before + moved) if calibration.simulation.integrator == "RK4" else moved
@@ -108,6 +118,7 @@ def energy_balance(robots: RobotArrays, control: Floats, calibration: Calibratio
     bodies, rotors, potential, stored, wound = end - start
     return EnergyBalance(
         motor_work_j=work["motor"],
+        driven_j=driven,
         mesh_loss_j=float(mesh.sum()),
         chain_loss_j=float(chain.sum()),
         bodies_kinetic_j=float(bodies),

@@ -13,10 +13,12 @@ from pareto_monoped.design import GRAVITY_M_PER_S2, Floats
 from pareto_monoped.jump.controller_record import HIP, KNEE, TOUCH_M
 from pareto_monoped.jump.torques import held_pose, release, torques
 
-RUNNING, FLYING, APEX, NO_LIFT_OFF, SANK, DIVERGED, TIMEOUT = range(7)
-"""``status``; a jump goes on through ``FLYING``."""
+RUNNING, FLYING, APEX, NO_LIFT_OFF, SANK, DIVERGED, TIMEOUT, LANDED = range(8)
+"""``status``; a jump goes on through ``FLYING``. A landing ends as ``LANDED``, or in failure."""
 
 SANK_M = 0.1  #: A base this low has fallen: half its actuators' diameter is 0.05 m.
+STILL_M_PER_S, STILL_RAD_PER_S, STILL_S = 0.01, 0.05, 0.05
+"""Speeds of base and joints below which a robot stands still, and for how long it must; our own choice."""
 SPEED_LIMIT = 1e4  #: Speed of a joint or slide (rad/s, m/s) beyond which the simulation has failed.
 
 
@@ -87,12 +89,43 @@ def _fine(q: Floats, v: Floats) -> bool:
 def _end(q: Floats, v: Floats, jump: Any) -> None:
     """End a jump at the apex (the foot is off the floor and the base no longer rises) or in failure."""
     z = places(v.shape[0])[0]
-    if jump.off_floor > 0.0 and v[z] <= 0.0:
+    if jump.landing > 0.0:
+        _end_landing(q, v, jump)
+    elif jump.off_floor > 0.0 and v[z] <= 0.0:
         jump.status = APEX
     elif q[z] < (SANK_M if jump.until_m == 0.0 else jump.foot_radius_m):
         jump.status = SANK
     elif jump.steps > jump.step_limit:
         jump.status = TIMEOUT if jump.off_floor > 0.0 else NO_LIFT_OFF
+
+
+@compiled
+def _end_landing(q: Floats, v: Floats, jump: Any) -> None:
+    """End a landing at rest in the crouch, or in failure: base or knee has met the floor, or nothing comes to rest."""
+    z, hip, knee, _, _ = places(v.shape[0])
+    still = abs(v[z]) < STILL_M_PER_S and max(abs(v[hip]), abs(v[knee])) < STILL_RAD_PER_S
+    lowered = jump.stood > 0.0 and _since_touch_s(jump) >= jump.catch_s + jump.lower_s
+    jump.still_steps = jump.still_steps + 1.0 if still and lowered else 0.0
+    if jump.still_steps * jump.timestep_s >= STILL_S:
+        jump.status = LANDED
+    elif q[z] < SANK_M or q[z] - jump.thigh_length_m * math.cos(q[hip]) < jump.foot_radius_m:
+        jump.status = SANK
+    elif jump.steps > jump.step_limit:
+        jump.status = TIMEOUT
+
+
+@compiled
+def _since_touch_s(jump: Any) -> float:
+    """Return the time since the foot of a landing first touched the floor."""
+    since: float = (jump.steps - 1.0) * jump.timestep_s - jump.touched_s
+    return since
+
+
+@compiled
+def _lower(jump: Any) -> None:
+    """Move the place that a landing's spring pulls the foot to: the catch, then smoothly down to the crouch."""
+    u = min(max((_since_touch_s(jump) - jump.catch_s) / jump.lower_s, 0.0), 1.0)
+    jump.foot_m[1] = jump.catch_m + (jump.crouch_m - jump.catch_m) * u * u * (3.0 - 2.0 * u)
 
 
 @compiled
@@ -146,6 +179,8 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
     jump.clearance_m = clearance
     touching = clearance <= TOUCH_M
     if touching:
+        if jump.stood == 0.0:
+            jump.touched_s = (jump.steps - 1.0) * jump.timestep_s
         jump.stood = 1.0
         jump.lift_off_step = jump.steps
     if jump.steps <= jump.lift_off_step + 1:
@@ -170,6 +205,8 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
             jump.quiet_periods += 1
         wanted, share = (0.0, 0.0), (gate, gate)
         if gate > 0.0:
+            if jump.landing > 0.0:
+                _lower(jump)
             wanted = torques((hip, knee), foot, shank, speed, jump)
             share = (gate, gate * release(knee, jump))
         elif jump.flight_stiffness_n_m_per_rad > 0.0:
@@ -225,7 +262,13 @@ def _note_state(q: Floats, v: Floats, thigh: tuple[float, float], shank: tuple[f
 
 @compiled
 def _gate(clearance: float, touching: bool, jump: Any) -> float:
-    """Return the share of the torque that passes at a foot clearance; notes lift-off."""
+    """Return the share of the torque that passes at a foot clearance; notes lift-off.
+
+    From the first touch of a landing on, all of it does: its spring holds the leg through a bounce as well.
+    """
+    if jump.landing > 0.0:
+        stands: float = jump.stood
+        return stands
     length = jump.fade_length_m
     if length > 0.0:
         u: float = min(max(clearance / length, 0.0), 1.0)

@@ -63,6 +63,10 @@ RECORD = np.dtype(
         *_each(_ONE, "until_m", "at_target", "joint_n_m_per_rad", "joint_n_m_s_per_rad"),
         *_each(_BOTH, "force_n", "force_n_per_m", "force_n_s_per_m", "foot_m", "foot_m_per_s"),
         *_each(_BOTH, "target_rad", "target_rad_per_s", "force_limit_n_m", "added_n_m"),
+        # A landing (``landing``): whether this is one; when the foot touched the floor, and over which times from there
+        # the leg is caught and then lowered; the foot's depth below the hip in the catch and in the crouch; and for how
+        # many steps nothing has moved. The catch is a push whose spring has this place of the foot.
+        *_each(_ONE, "landing", "touched_s", "catch_s", "lower_s", "catch_m", "crouch_m", "still_steps"),
         # What the loads are computed from, see ``_loads``.
         ("body_mass_kg", (np.float64, (3,))),
         *_each(_ONE, "stand_mass_kg", "rail_friction_n"),  # what the base lifts besides the robot; of all carriages

@@ -13,7 +13,7 @@ from pareto_monoped.jump.calibration import Calibration, SpringContact
 from pareto_monoped.jump.controller_record import OBSERVED
 from pareto_monoped.jump.laws import PAPER_LAW, Profile
 from pareto_monoped.jump.model import StartPose, joint_friction_n_m, start_pose, start_qpos
-from pareto_monoped.jump.population import Records, first_records, prepare
+from pareto_monoped.jump.population import Records, first_records, prepare, states
 from pareto_monoped.jump.variations import Variations, vary_records
 from pareto_monoped.robot.population import RobotArrays
 
@@ -28,6 +28,9 @@ class Jumping(Protocol):
 
     def observed(self) -> list[Floats]:
         """Make all jumps to their end, and return ``OBSERVED`` of each, n arrays of shape (steps, 16)."""
+
+    def go_on(self, records: Records, calibration: Calibration) -> None:
+        """Put all robots into the states in other records, with which they go on."""
 
     def complaints(self) -> list[str]:
         """Return what the engine found wrong in each jump; empty where nothing was."""
@@ -68,6 +71,10 @@ class PlanarPopulation:
         seen = np.empty((len(self.records), room, sum(OBSERVED.values())))
         self._run(seen)
         return [one[:steps] for one, steps in zip(seen, self.records["steps"].astype(int), strict=True)]
+
+    def go_on(self, records: Records, calibration: Calibration) -> None:
+        """Put all robots into the states in other records, with which they go on."""
+        self.records, (self.start, _) = records, states(records, calibration)
 
     def _run(self, seen: Floats) -> None:
         from pareto_monoped.jump.planar import stepper

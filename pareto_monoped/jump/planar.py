@@ -307,8 +307,9 @@ def _step(q: Floats, v: Floats, elastic: bool, jump: Any, work: Any, a: Floats) 
 def stepper() -> Callable[[Any, Any, Floats, int, Floats], None]:
     """Return the compiled function that makes jumps; it closes over ``origin``.
 
-    Its arguments are records, grounds, start positions (n, nv), the number of torques, and room for what is observed of
-    each step, ``controller_record.OBSERVED``, shape (n, steps, 16); steps beyond the room are not kept.
+    A jump starts with the speeds in its record. The arguments are records, grounds, start positions (n, nv), the number
+    of torques, and room for what is observed of each step, ``controller_record.OBSERVED``, shape (n, steps, 16); steps
+    beyond the room are not kept.
     """
     return _stepper(zlib.crc32(f"{origin()}{GROUND.descr}{LEAST_IMPEDANCE}".encode()))
 
@@ -329,12 +330,16 @@ def _stepper(sources: int) -> Callable[[Any, Any, Floats, int, Floats], None]:
         arms, matrix, whole = np.zeros((4, 2)), np.zeros((4, 4)), np.zeros((4, 4))
         inverse, mode = np.zeros(4), np.zeros(4, np.int64)
         work = (arms, matrix, whole, force, right, np.zeros(3))
-        z, hip, _, hip_motor, _ = places(n)
+        z, hip, _, hip_motor, knee_motor = places(n)
         guided, elastic = z == 0, hip_motor != hip
         for i in range(len(records)):
             jump, ground = records[i], grounds[i]
             q[:] = start[i]
-            v[:] = 0.0
+            v[0] = jump.velocity[0]
+            for k in range(3):
+                v[z + k] = jump.velocity[1 + k]
+            if elastic:
+                v[hip_motor], v[knee_motor] = jump.motor_rad_per_s[HIP], jump.motor_rad_per_s[KNEE]
             ctrl[:] = 0.0
             mode[:] = 0
             force[:] = 0.0

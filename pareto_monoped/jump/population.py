@@ -117,6 +117,14 @@ class Population:
                 step += 1
         return [one[:count] for one, count in zip(seen, steps, strict=True)]
 
+    def go_on(self, records: Records, calibration: Calibration) -> None:
+        """Put all robots into the states in other records, with which they go on."""
+        import mujoco
+
+        for part, values in zip(("QPOS", "QVEL"), states(records, calibration), strict=True):
+            _component(self.batch, mujoco.mjtState.__members__[f"mjSTATE_{part}"])[:] = values
+        self.records[:] = records
+
     def complaints(self) -> list[str]:
         """Return what MuJoCo found wrong in each jump, in our words; empty where nothing was."""
         import mujoco
@@ -187,6 +195,15 @@ def _template(calibration: Calibration, stops: EndStops) -> Any:
     import mujoco
 
     return mujoco.MjModel.from_xml_string(template_mjcf(calibration, stops, RECORD_NUMBERS))
+
+
+def states(records: Records, calibration: Calibration) -> tuple[Floats, Floats]:
+    """Return positions and speeds of the states that n records have noted, shape (n, nv) each."""
+    columns = ("slide_x", "slide_z", "hip", "knee", "hip_motor", "knee_motor")
+    places = [columns.index(name) for name in model.coordinates(calibration)]
+    noted = ((records["position"], records["motor_rad"]), (records["velocity"], records["motor_rad_per_s"]))
+    positions, speeds = (np.hstack(pair)[:, places] for pair in noted)
+    return positions, speeds
 
 
 def first_records(robots: RobotArrays, control: Floats, calibration: Calibration) -> Records:

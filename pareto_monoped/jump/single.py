@@ -80,8 +80,13 @@ class Moment:
     last: bool  #: whether the jump ends here, without a step
 
 
-def moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> Iterator[Moment]:
-    """Step the first robot to the end of its jump.
+Then = Callable[[Any], Any]  #: From records of jumps that have ended to those with which they go on; None: not at all.
+
+
+def moments(
+    robots: RobotArrays, control: Floats, calibration: Calibration, then: Then | None = None
+) -> Iterator[Moment]:
+    """Step the first robot to the end of its jump, and on as long as ``then`` has another record.
 
     MuJoCo computes the derived quantities of a state at the start of the step, and most integrators leave them in its
     data. A Runge-Kutta step leaves those of its last stage, so for it they are computed in a second ``MjData``.
@@ -95,7 +100,8 @@ def moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> I
     model = mujoco.MjModel.from_xml_string(mjcf(robots, calibration))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    record = first_records(robots, control, calibration)[0]
+    records = first_records(robots, control, calibration)
+    record = records[0]
     derived = data if record["stages"] == 1.0 else mujoco.MjData(model)
     scratch = mujoco.MjData(model)
     # This loop calls the controller once per step, whatever the integrator.
@@ -104,6 +110,11 @@ def moments(robots: RobotArrays, control: Floats, calibration: Calibration) -> I
         while True:
             qpos, qvel = data.qpos.copy(), data.qvel.copy()
             act(qpos, qvel, data.ctrl, record)
+            while record["status"] > FLYING and then is not None and (others := then(records)) is not None:
+                records = others
+                record = records[0]
+                record["stages"] = 1.0
+                act(qpos, qvel, data.ctrl, record)
             running = record["status"] <= FLYING
             if derived is not data:
                 derived.qpos[:], derived.qvel[:], derived.ctrl[:] = qpos, qvel, data.ctrl
