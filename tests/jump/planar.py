@@ -324,6 +324,92 @@ def jump(m, q):
     return np.nan, np.nan, np.nan, peaks
 
 
+Plan = namedtuple("Plan", "carried catch crouch stiffness damping catch_s lower_s posture held")
+"""A landing: the force that carries the robot in the crouch, depths of the foot below the hip, the leg's spring and its
+dampers forward and down, times, the posture of hip and knee in flight, and spring and damper that hold it."""
+
+
+def plan_of(m, apex_z, reach=0.9, stroke=0.7, ratio=0.4, lower_s=0.2):
+    """The landing of docs/landing.md."""
+    stand = standing(m)
+    crouch = m.thigh * np.cos(stand[2]) + m.shank * np.cos(stand[2] + stand[3])
+    catch = max(reach * (m.thigh + m.shank), crouch)
+    bend = np.pi - np.arccos((m.thigh**2 + m.shank**2 - catch**2) / (2 * m.thigh * m.shank))
+    posture = np.array([-np.arcsin(m.shank * np.sin(bend) / catch), bend])
+    folded = abs(m.thigh + m.shank * np.exp(1j * m.upper[1]))
+    speed = np.sqrt(2 * GRAVITY * max(apex_z - catch - m.radius, 0.05))
+    # The greatest depth of m x'' + 2 ratio omega x' + omega^2 x = 0 from x' = 1 for omega = 1, and when it is reached.
+    t = np.arange(0.0, 3.0, 1e-5)
+    swing = np.sqrt(1 - ratio**2)
+    depth = np.exp(-ratio * t) * np.sin(swing * t) / swing
+    omega = depth.max() * speed / (stroke * (catch - max(folded, 0.15 - m.radius)))
+    moved = m.mass.sum() + m.stand
+    held = (stand[5] - stand[3]) * m.spring[1]  # without play
+    straight = bodies(np.zeros(4), m)[0][2, 2]
+    return Plan(
+        carried=-held / (m.shank * np.sin(stand[2] + stand[3])),
+        catch=catch,
+        crouch=crouch,
+        stiffness=moved * omega**2,
+        damping=np.array([2 * min(ratio, 0.3) * moved * omega, 2 * ratio * moved * omega]),
+        catch_s=t[depth.argmax()] / omega,
+        lower_s=lower_s,
+        posture=posture,
+        held=np.array([625.0, 2 * 0.7 * 25.0]) * straight,
+    )
+
+
+@numba.njit(cache=True)
+def land(m, q, v, plan):
+    """Time from touchdown to rest, work given and taken by the motors and their heat, and the peaks of ``LOADS``."""
+    n = len(q)
+    q, v, motor, mode = q.copy(), v.copy(), np.zeros(2), np.zeros(5, np.int64)
+    touched, still, h = -1.0, 0.0, 1e-3 / SUBSTEPS
+    given, taken, heat = 0.0, 0.0, 0.0
+    torques, peaks, loads = np.zeros((3000, 2)), np.zeros(5), np.zeros(5)
+    for period in range(3000):
+        since = period * 1e-3 - touched
+        if touched >= 0 and still >= 0.05:
+            return period * 1e-3 - touched, given, taken, heat, peaks
+        hip, knee = q[n - 2], q[n - 1]
+        if touched < 0:
+            for j in range(2):
+                torques[period, j] = plan.held[0] * (plan.posture[j] - q[n - 2 + j]) - plan.held[1] * v[n - 2 + j]
+        else:
+            u = min(max((since - plan.catch_s) / plan.lower_s, 0.0), 1.0)
+            place = plan.catch - (plan.catch - plan.crouch) * (3 * u**2 - 2 * u**3)
+            along, up = jacobian(turned(hip, 0.0, -m.thigh), turned(hip + knee, 0.0, -m.shank))
+            x, down = -up[2], -along[2]
+            forward = along[2] * v[n - 2] + along[3] * v[n - 1]
+            sinking = -(up[2] * v[n - 2] + up[3] * v[n - 1])
+            push_x = -plan.stiffness * x - plan.damping[0] * forward
+            push_down = plan.carried + plan.stiffness * (place - down) - plan.damping[1] * sinking
+            for j in range(2):
+                torques[period, j] = along[2 + j] * push_x - up[2 + j] * push_down
+        due = period - m.delay
+        for j in range(2):
+            motor[j] = limited(torques[due, j], v, m, j) if due >= 0 else 0.0
+        for sub in range(SUBSTEPS):
+            if touched < 0 and q[1] - m.thigh * np.cos(q[2]) - m.shank * np.cos(q[2] + q[3]) <= m.radius:
+                touched = period * 1e-3 + sub * h
+            loads[:] = 0.0
+            before = v.copy()
+            a1 = step(q, v, motor, m, mode, loads, h)
+            loads[0] = abs(motor[0] - m.rotor[0] * a1[n - 2])
+            loads[1] = abs(motor[1] - m.rotor[1] * a1[n - 1] - m.rotor[1] / m.ratio * a1[2])
+            for i in range(5):
+                peaks[i] = max(peaks[i], loads[i])
+            for j in range(2):
+                power = motor[j] * 0.5 * (before[n - 2 + j] + v[n - 2 + j])
+                given += max(power, 0.0) * h
+                taken += max(-power, 0.0) * h
+                heat += m.heat[j] * motor[j] ** 2 * h
+            calm = abs(v[1]) < 0.01 and abs(v[2]) < 0.05 and abs(v[3]) < 0.05
+            lowered = touched >= 0 and period * 1e-3 + sub * h - touched >= plan.catch_s + plan.lower_s
+            still = still + h if calm and lowered else 0.0
+    return np.nan, given, taken, heat, peaks
+
+
 def with_inverse_masses(m):
     """With A of hip, knee and foot; with elastic drives, of the motors and the foot."""
     # Arrays of one layout: for others, all would be compiled again.

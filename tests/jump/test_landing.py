@@ -1,0 +1,138 @@
+"""Landings and hops: both engines, the energy balance, what a landing starts from, and what ends it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.design import NAMES, PAPER_CASES, complete, control_of
+from pareto_monoped.jump.balance import energy_balance
+from pareto_monoped.jump.calibration import load_calibration, on_stand
+from pareto_monoped.jump.controller import LANDED
+from pareto_monoped.jump.engines import population_of
+from pareto_monoped.jump.evaluate import Evaluator
+from pareto_monoped.jump.landing import LANDING, Landing, best_landed, course, hops, landed, landing_records
+from pareto_monoped.jump.model import start_pose
+from pareto_monoped.jump.single import moments
+from pareto_monoped.jump.variations import take
+from pareto_monoped.measures import LANDING_MEASURES
+from pareto_monoped.robot.population import robot_arrays
+from tests.jump.test_engines import wild_designs
+
+ELASTIC = load_calibration("reference")
+RIGID = replace(ELASTIC, name="rigid", drive=replace(ELASTIC.drive, elastic=False))
+CASES = complete(np.array([case.design.as_array() for case in PAPER_CASES.values()]))
+MAP = map_for("VT8020")
+ROBOTS = robot_arrays(CASES, MAP, ELASTIC.mass)
+
+
+@pytest.mark.parametrize("calibration", [ELASTIC, on_stand(ELASTIC), RIGID], ids=["elastic", "stand", "rigid"])
+def test_both_engines_land_alike(calibration):
+    """Every measure; by 4e-10 at worst where drives are elastic."""
+    designs = np.vstack([CASES, wild_designs(12, 5)])
+    one, other = (landed(designs, MAP, calibration.by(engine)) for engine in ("compiled", "mujoco"))
+    np.testing.assert_array_equal(one.status, other.status)
+    assert np.count_nonzero(one.status == "landed") >= 5
+    for measure in LANDING_MEASURES:
+        values, judged = getattr(one, measure.name), getattr(other, measure.name)
+        np.testing.assert_allclose(values, judged, rtol=1e-7, atol=1e-9, err_msg=measure.name)
+
+
+@pytest.mark.parametrize("row", range(4))
+def test_energy_is_kept_over_jump_and_landing(row):
+    """Measured: 2e-5 to 1.4e-4 of the net work, 2e-6 to 5e-5 of what the motors put in."""
+    robots, control = take(ROBOTS, np.array([row])), control_of(CASES[[row]])
+    balance = energy_balance(robots, control, ELASTIC, course(robots, control, ELASTIC))
+    assert balance.error < 5e-4
+    assert balance.course_error < 1e-4
+    assert balance.driven_j > 1.2 * Evaluator(MAP, ELASTIC)(CASES[[row]]).energy_j[0]
+
+
+def test_the_balance_does_not_drift_over_hops():
+    """100 hops of Case C leave 1.8e-6 of what the motors put in, 10 leave 2.4e-6, one 5.6e-6; here 4."""
+    robots, control = take(ROBOTS, np.array([3])), control_of(CASES[[3]])
+    balance = energy_balance(robots, control, ELASTIC, course(robots, control, ELASTIC, hops=4))
+    assert balance.course_error < 1e-4
+
+
+def test_step_by_step_it_is_the_landing_of_the_batch():
+    robots, control = take(ROBOTS, np.array([3])), control_of(CASES[[3]])
+    for last in moments(robots, control, ELASTIC, course(robots, control, ELASTIC)):  # noqa: B007
+        pass
+    found = landed(CASES[[3]], MAP, ELASTIC)
+    assert last.record["status"] == LANDED
+    np.testing.assert_allclose(last.record["peak_foot_force_n"], found.landing_peak_foot_force_n[0], rtol=1e-5)
+    assert abs(last.qvel).max() < 0.06
+
+
+def test_a_landing_begins_where_the_jump_ends_and_leaves_it_as_it_is():
+    calibration, control = ELASTIC, control_of(CASES)
+    population = population_of(ROBOTS, control, start_pose(ROBOTS, calibration), calibration)
+    population.run()
+    jumped = population.records.copy()
+    records = landing_records(ROBOTS, control, calibration, LANDING, jumped)
+    for name in ("position", "velocity", "motor_rad", "motor_rad_per_s"):
+        np.testing.assert_array_equal(records[name], jumped[name])
+    assert not records["energy_j"].any()
+    assert not records["peak_gear_torque_n_m"].any()
+    np.testing.assert_array_equal(jumped["height_m"], Evaluator(MAP, calibration)(CASES).height_m)
+
+
+def test_it_comes_to_rest_in_the_crouch_with_the_foot_below_the_hip():
+    """Coulomb friction of both joints holds it 38 mm high and 47 mm aside, as a soft spring pulls it there."""
+    population = population_of(ROBOTS, control_of(CASES), start_pose(ROBOTS, ELASTIC), ELASTIC)
+    population.run()
+    records = landing_records(ROBOTS, control_of(CASES), ELASTIC, LANDING, population.records.copy())
+    population.go_on(records, ELASTIC)
+    population.run()
+    _, z, hip, knee = population.records["position"].T
+    thigh, shank = ROBOTS.thigh_length_m, ROBOTS.shank_length_m
+    foot_x = -thigh * np.sin(hip) - shank * np.sin(hip + knee)
+    np.testing.assert_allclose(z, ROBOTS.start_height_m, atol=0.05)
+    np.testing.assert_allclose(foot_x, 0.0, atol=0.06)
+
+
+def test_what_flows_back_is_what_a_battery_that_takes_all_would_save():
+    keen = replace(ELASTIC, drive=replace(ELASTIC.drive, regeneration_share=0.6))
+    plain, kept = landed(CASES, MAP, ELASTIC), landed(CASES, MAP, keen)
+    saved = plain.landing_electrical_energy_j - kept.landing_electrical_energy_j
+    assert (plain.landing_returned_j > 1.0).all()
+    np.testing.assert_allclose(saved, 0.6 * plain.landing_returned_j, rtol=1e-9)
+
+
+def test_a_jump_that_fails_does_not_land():
+    weak = CASES[:1].copy()
+    weak[:, NAMES.index("stiffness_n_per_m")] = 0.01
+    found = landed(np.vstack([CASES[:1], weak]), MAP, ELASTIC)
+    assert found.status.tolist() == ["landed", "no_jump"]
+    assert np.isnan(found.landing_peak_foot_force_n).tolist() == [False, True]
+    assert not found.landing_ok.any()
+
+
+def test_a_leg_that_gives_way_sinks():
+    found = landed(CASES, MAP, ELASTIC, Landing(reach=0.95, stroke=0.99, damping_ratio=0.02))
+    assert set(found.status) - {"landed"}
+    assert not found.landing_ok.any()
+
+
+def test_the_best_landing_is_never_worse():
+    default, best = landed(CASES, MAP, ELASTIC), best_landed(CASES, MAP, ELASTIC)
+    assert (best.landing_safety >= default.landing_safety).all()
+    again = landed(CASES[[0]], MAP, ELASTIC, best.landing[0])
+    assert again.landing_safety[0] == best.landing_safety[0]
+
+
+def test_hops_become_steady_and_their_rate_is_that_of_the_windings():
+    robots = take(ROBOTS, np.array([3]))
+    found = hops(robots, control_of(CASES[[3]]), ELASTIC, 15)
+    assert found.reason == ""
+    assert 0 < found.steady_from < 12
+    assert found.height_m[0] == Evaluator(MAP, ELASTIC)(CASES[[3]]).height_m[0]
+    one = landed(CASES[[3]], MAP, ELASTIC)
+    jump = Evaluator(MAP, ELASTIC)(CASES[[3]])
+    np.testing.assert_allclose(found.energy_j[0], jump.energy_j[0] + one.landing_energy_j[0], rtol=1e-12)
+    taken = jump.electrical_energy_j[0] + one.landing_electrical_energy_j[0]
+    np.testing.assert_allclose(found.electrical_energy_j[0], taken, rtol=1e-12)
+    assert 0.0 < found.hops_per_minute <= 60.0 / found.period_s[-1] + 1e-9
+    assert found.hops_per_minute < jump.sustained_jumps_per_minute[0]
