@@ -34,6 +34,7 @@ from pareto_monoped.design import LENGTHS, Design
 from pareto_monoped.errors import CheckError
 from pareto_monoped.jump.calibration import Calibration, on_stand
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
+from pareto_monoped.jump.landing import in_words
 from pareto_monoped.jump.model import rail_friction_n
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.stand import stand_mass_kg
@@ -154,6 +155,7 @@ def export_design(
         loads = _loads(built.design, results, list(designs).index("as_built"))
         factors = joint_factors(built.design, maps, loads)
         life = gear_life(built.design, maps, loads)
+        landing = in_words(built.design.as_array(), maps, calibration)
         record["jumps"] = _jumps(designs, results) | _jump_on_stand(built.design, maps, calibration)
         progress("checking")
         shown = visuals(product) if {"mjcf", "urdf"} & set(wanted) else ()
@@ -178,7 +180,7 @@ def export_design(
             write(folder, "parameters.csv", parameters_csv(dimensions))
             write(folder, "monoped_equations.txt", equations(dimensions))
             write(folder, "checks.json", checks_record(checks))
-            write(folder, "README.md", readme(record, product, checks, record["formats"], factors, life))
+            write(folder, "README.md", readme(record, product, checks, record["formats"], factors, life, landing))
             ordered.write(folder)
             record["files"] = [*files_in(folder), RECORD]
             write(folder, RECORD, json.dumps(record, indent=2) + "\n")

@@ -283,6 +283,7 @@ def pick(
         echo(wrapped(dear))
     echo(wrapped(step.text()))
     echo(wrapped(f"limits: {'; '.join(limits) or 'none binds'}"))
+    echo(wrapped("landing: left out, the leg is caught at the apex; 'export' says whether the design survives it"))
     if by_robust:
         failed, overloaded = (100.0 * row[name] for name in shares)
         ends = "measures are the worse of their 5th and 95th percentiles"

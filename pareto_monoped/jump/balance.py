@@ -26,7 +26,6 @@ class EnergyBalance:
     """Where the work of the motors went, in joules."""
 
     motor_work_j: float  #: of both motors, less what they absorbed
-    driven_j: float  #: the part of it in which they drive
     #: mesh_loss_j, chain_loss_j: lost in the gearboxes and in the chain
     mesh_loss_j: float
     chain_loss_j: float
@@ -65,11 +64,6 @@ class EnergyBalance:
         """What physics leaves open, as a share of the joints' work: the residual with what the integrator loses."""
         return abs(self.residual_j + self.integration_j) / max(abs(self.joint_work_j), 1e-12)
 
-    @property
-    def course_error(self) -> float:
-        """The same as a share of the work with which the motors drive; those of a landing take most of it again."""
-        return abs(self.residual_j + self.integration_j) / max(self.driven_j, 1e-12)
-
 
 def energy_balance(
     robots: RobotArrays, control: Floats, calibration: Calibration, then: Then | None = None
@@ -87,7 +81,6 @@ def energy_balance(
     mesh, chain = np.zeros(2), np.zeros(2)
     mesh_share = _mesh_share(robots, calibration)
     first: Moment | None = None
-    driven = 0.0
     moved: Floats | float = 0.0
     for moment in moments(robots, control, calibration, then):
         first = first or moment
@@ -97,7 +90,6 @@ def energy_balance(
         motor = np.array(moment.record["motor_torque_n_m"]) * moved[motors]
         lost = motor - moment.data.ctrl[:2] * moved[motors]
         work["motor"] += float(motor.sum())
-        driven += float(np.maximum(motor, 0.0).sum())
         mesh += mesh_share * lost
         chain += (1.0 - mesh_share) * lost
         mean = 0.5 * (before + moved) if calibration.simulation.integrator == "RK4" else moved
@@ -118,7 +110,6 @@ def energy_balance(
     bodies, rotors, potential, stored, wound = end - start
     return EnergyBalance(
         motor_work_j=work["motor"],
-        driven_j=driven,
         mesh_loss_j=float(mesh.sum()),
         chain_loss_j=float(chain.sum()),
         bodies_kinetic_j=float(bodies),

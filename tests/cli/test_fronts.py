@@ -161,7 +161,8 @@ def test_the_printed_pick_has_six_digits(db, capsys):
     names = ("height_m", "energy_j", *PAPER_NAMES)
     assert [line.split() for line in lines[: len(names)]] == [[name, f"{picked[name]:.6g}"] for name in names]
     assert " ".join(" ".join(lines[len(names) :]).split()) == (
-        "one more centimetre of height costs 1 J of energy (trial 0: 0.800 m on 9.00 J) limits: none binds"
+        "one more centimetre of height costs 1 J of energy (trial 0: 0.800 m on 9.00 J) limits: none binds "
+        "landing: left out, the leg is caught at the apex; 'export' says whether the design survives it"
     )
 
 

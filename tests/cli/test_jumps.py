@@ -28,6 +28,21 @@ def test_simulate_json_has_what_others_rely_on(capsys):
         assert report[name] > 0.0
 
 
+def test_landing_and_hops_are_asked_for_and_leave_the_jump_as_it_is(capsys):
+    plain = json.loads(run(capsys, "simulate", "--case", "C", "--json")[1])
+    code, out, _ = run(capsys, "simulate", "--case", "C", "--landing", "--hops", "3", "--json")
+    report = json.loads(out)
+    landing, hops = report.pop("landing"), report.pop("hops")
+    assert (code, report) == (0, plain)
+    assert (landing["status"], landing["landing_ok"]) == ("landed", False)
+    assert 1000.0 < landing["landing_peak_foot_force_n"] < 2000.0
+    assert landing["landing_safety"] < landing["best_found"]["landing_safety"] < 1.0
+    assert (hops["made"], hops["reason"]) == (3, "")
+    assert hops["energy_j"] > plain["energy_j"]
+    shown = run(capsys, "simulate", "--case", "C", "--landing")[1]
+    assert f"landing_peak_foot_force_n {landing['landing_peak_foot_force_n']:.6g}" in " ".join(shown.split())
+
+
 def test_rules_choose_the_gearboxes_and_a_stand_in_is_noted(capsys):
     code, out, err = run(capsys, "simulate", "--case", "A", "--set", "knee_ratio=6.15", "--rules", "iso6336", "--json")
     report = json.loads(out)

@@ -26,14 +26,15 @@ def readme(
     formats: Sequence[str],
     factors: Sequence[JointFactor] = (),
     life: GearLife | None = None,
+    landing: str = "",
 ) -> str:
-    """Return the page as Markdown; ``factors`` is empty if the design does not jump."""
-    blocks = (_design(record, product.robot.cost), _actuators(record), _files(formats), _making(product))
+    """Return the page as Markdown; ``factors`` is empty if the design does not jump. ``landing`` says how it lands."""
+    blocks = (_design(record, product.robot.cost, landing), _actuators(record), _files(formats), _making(product))
     lines = [line for block in (*blocks, _strength(record, factors, life), _checks(checks)) for line in block]
     return "\n".join(lines) + "\n"
 
 
-def _design(record: Mapping[str, Any], cost: Cost) -> Iterator[str]:
+def _design(record: Mapping[str, Any], cost: Cost, landing: str) -> Iterator[str]:
     yield from ("# Monoped", "")
     yield from (f"Made by {record['made_by']} with motor {record['motor']}; {record['mass_kg']:.2f} kg.", "")
     yield (
@@ -60,6 +61,7 @@ def _design(record: Mapping[str, Any], cost: Cost) -> Iterator[str]:
             f"{there['mass_kg']:.3f} kg of arms and carriages, it jumps {there['height_m']:.4g} m with "
             f"{there['energy_j']:.4g} J."
         )
+    yield from filter(None, [landing])
     yield ""
 
 
