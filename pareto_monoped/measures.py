@@ -287,10 +287,7 @@ AUDIT_MEASURES: tuple[Measure, ...] = _described(AuditMeasures)  #: In the order
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LandingMeasures:
-    """What n landings measure, each of shape (n,); NaN without a landing.
-
-    ``status`` is one of ``jump.landing.STATUSES``, and ``landing_ok`` says whether the hardware survives.
-    """
+    """What n landings measure, each of shape (n,); NaN without one. ``landing_ok``: whether the hardware survives."""
 
     # fmt: off
     status: NDArray[np.str_]

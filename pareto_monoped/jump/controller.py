@@ -11,7 +11,7 @@ from typing import Any
 from pareto_monoped.compute.compiled import compiled
 from pareto_monoped.design import GRAVITY_M_PER_S2, Floats
 from pareto_monoped.jump.controller_record import HIP, KNEE, TOUCH_M
-from pareto_monoped.jump.torques import held_pose, release, torques
+from pareto_monoped.jump.torques import delivered, held_pose, limited, lower, release, since_touch_s, torques
 
 RUNNING, FLYING, APEX, NO_LIFT_OFF, SANK, DIVERGED, TIMEOUT, LANDED = range(8)
 """``status``; a jump goes on through ``FLYING``. A landing ends as ``LANDED``, or in failure."""
@@ -104,7 +104,7 @@ def _end_landing(q: Floats, v: Floats, jump: Any) -> None:
     """End a landing at rest in the crouch, or in failure: base or knee has met the floor, or nothing comes to rest."""
     z, hip, knee, _, _ = places(v.shape[0])
     still = abs(v[z]) < STILL_M_PER_S and max(abs(v[hip]), abs(v[knee])) < STILL_RAD_PER_S
-    lowered = jump.stood > 0.0 and _since_touch_s(jump) >= jump.catch_s + jump.lower_s
+    lowered = jump.stood > 0.0 and since_touch_s(jump) >= jump.catch_s + jump.lower_s
     jump.still_steps = jump.still_steps + 1.0 if still and lowered else 0.0
     if jump.still_steps * jump.timestep_s >= STILL_S:
         jump.status = LANDED
@@ -112,20 +112,6 @@ def _end_landing(q: Floats, v: Floats, jump: Any) -> None:
         jump.status = SANK
     elif jump.steps > jump.step_limit:
         jump.status = TIMEOUT
-
-
-@compiled
-def _since_touch_s(jump: Any) -> float:
-    """Return the time since the foot of a landing first touched the floor."""
-    since: float = (jump.steps - 1.0) * jump.timestep_s - jump.touched_s
-    return since
-
-
-@compiled
-def _lower(jump: Any) -> None:
-    """Move the place that a landing's spring pulls the foot to: the catch, then smoothly down to the crouch."""
-    u = min(max((_since_touch_s(jump) - jump.catch_s) / jump.lower_s, 0.0), 1.0)
-    jump.foot_m[1] = jump.catch_m + (jump.crouch_m - jump.catch_m) * u * u * (3.0 - 2.0 * u)
 
 
 @compiled
@@ -206,7 +192,7 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
         wanted, share = (0.0, 0.0), (gate, gate)
         if gate > 0.0:
             if jump.landing > 0.0:
-                _lower(jump)
+                lower(jump)
             wanted = torques((hip, knee), foot, shank, speed, jump)
             share = (gate, gate * release(knee, jump))
         elif jump.flight_stiffness_n_m_per_rad > 0.0:
@@ -214,8 +200,8 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
         _command(wanted, share, speed, jump)
     for joint in range(2):
         jump.speed_rad_per_s[joint] = speed[joint]
-        delivered = _delivered(jump.motor_torque_n_m[joint], speed[joint], jump, joint)
-        ctrl[joint] = jump.joint_torque_n_m[joint] = delivered
+        torque = delivered(jump.motor_torque_n_m[joint], speed[joint], jump, joint)
+        ctrl[joint] = jump.joint_torque_n_m[joint] = torque
 
 
 @compiled
@@ -303,37 +289,8 @@ def _command(wanted: tuple[float, float], share: tuple[float, float], speed: tup
     if jump.commands[slot, 2 + HIP] > 0.0:
         jump.active_steps += 1
         for joint in range(2):
-            torque = _limited(jump.commands[slot, joint], speed[joint], jump, joint)
+            torque = limited(jump.commands[slot, joint], speed[joint], jump, joint)
             jump.motor_torque_n_m[joint] = jump.commands[slot, 2 + joint] * torque
-
-
-@compiled
-def _limited(torque: float, speed: float, jump: Any, joint: int) -> float:
-    """Return ``torque`` within the motor's peak torque and, while the motor drives, within its voltage-speed line."""
-    limit: float = jump.torque_limit_n_m[joint]
-    upper, lower = limit, -limit
-    if jump.voltage_limit > 0.0:
-        no_load, corner = jump.no_load_speed_rad_per_s[joint], jump.corner_speed_rad_per_s[joint]
-        upper = limit * min(max((no_load - speed) / (no_load - corner), 0.0), 1.0)
-        lower = -limit * min(max((no_load + speed) / (no_load - corner), 0.0), 1.0)
-    if torque >= upper:
-        jump.saturated_steps[joint] += 1
-        return upper
-    if torque <= lower:
-        jump.saturated_steps[joint] += 1
-        return lower
-    return torque
-
-
-@compiled
-def _delivered(torque: float, speed: float, jump: Any, joint: int) -> float:
-    """Return the torque that reaches the joint: the load-dependent friction of gears and chain opposes the motion."""
-    loss: float = jump.loss[joint]
-    limit: float = jump.torque_limit_n_m[joint]
-    if loss == 0.0 or torque == 0.0:
-        return torque
-    after = torque - loss * abs(torque) * math.tanh(speed / jump.loss_speed_rad_per_s)
-    return min(max(after, -limit), limit)
 
 
 @compiled

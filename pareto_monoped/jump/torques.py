@@ -1,4 +1,4 @@
-"""What the motors are told: the laws of ``laws``, a push that is replayed, and the pose held in flight.
+"""What the motors are told: the laws of ``laws``, a push that is replayed, the pose held in flight; what they deliver.
 
 Compiled by numba.
 """
@@ -154,3 +154,46 @@ def release(knee: float, jump: Any) -> float:
         return 1.0
     share: float = min(max((knee - jump.lower_stop_rad[KNEE]) / jump.knee_release_rad, 0.0), 1.0)
     return share
+
+
+@compiled
+def since_touch_s(jump: Any) -> float:
+    """Return the time since the foot of a landing first touched the floor."""
+    since: float = (jump.steps - 1.0) * jump.timestep_s - jump.touched_s
+    return since
+
+
+@compiled
+def lower(jump: Any) -> None:
+    """Move the place that a landing's spring pulls the foot to: the catch, then smoothly down to the crouch."""
+    u = min(max((since_touch_s(jump) - jump.catch_s) / jump.lower_s, 0.0), 1.0)
+    jump.foot_m[1] = jump.catch_m + (jump.crouch_m - jump.catch_m) * u * u * (3.0 - 2.0 * u)
+
+
+@compiled
+def limited(torque: float, speed: float, jump: Any, joint: int) -> float:
+    """Return ``torque`` within the motor's peak torque and, while the motor drives, within its voltage-speed line."""
+    limit: float = jump.torque_limit_n_m[joint]
+    upper, lower = limit, -limit
+    if jump.voltage_limit > 0.0:
+        no_load, corner = jump.no_load_speed_rad_per_s[joint], jump.corner_speed_rad_per_s[joint]
+        upper = limit * min(max((no_load - speed) / (no_load - corner), 0.0), 1.0)
+        lower = -limit * min(max((no_load + speed) / (no_load - corner), 0.0), 1.0)
+    if torque >= upper:
+        jump.saturated_steps[joint] += 1
+        return upper
+    if torque <= lower:
+        jump.saturated_steps[joint] += 1
+        return lower
+    return torque
+
+
+@compiled
+def delivered(torque: float, speed: float, jump: Any, joint: int) -> float:
+    """Return the torque that reaches the joint: the load-dependent friction of gears and chain opposes the motion."""
+    loss: float = jump.loss[joint]
+    limit: float = jump.torque_limit_n_m[joint]
+    if loss == 0.0 or torque == 0.0:
+        return torque
+    after = torque - loss * abs(torque) * math.tanh(speed / jump.loss_speed_rad_per_s)
+    return min(max(after, -limit), limit)
