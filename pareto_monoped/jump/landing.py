@@ -314,6 +314,7 @@ class Hops:
     electrical_energy_j: Floats  #: taken from the battery
     winding_heat_j: Floats  #: of the windings of hip and knee, shape (hops made, 2)
     period_s: Floats  #: from standing to standing
+    standing_heat_w: Floats  #: of both windings after the last landing, shape (2,)
     hops_per_minute: float  #: that neither winding is too hot for, at the last hop; 0 if standing is too much already
     reason: str  #: why there are fewer than asked for; empty if there are not
 
@@ -367,6 +368,7 @@ def hops(
         electrical_energy_j=values[:, 2],
         winding_heat_j=values[:, 3:5],
         period_s=values[:, 5],
+        standing_heat_w=hold_w,
         hops_per_minute=_per_minute(ended, first, values[-1], hold_w) if rows else float("nan"),
         reason="" if len(rows) == count else f"{what} {len(rows) + 1} did not come to rest",
     )

@@ -134,5 +134,11 @@ def test_hops_become_steady_and_their_rate_is_that_of_the_windings():
     np.testing.assert_allclose(found.energy_j[0], jump.energy_j[0] + one.landing_energy_j[0], rtol=1e-12)
     taken = jump.electrical_energy_j[0] + one.landing_electrical_energy_j[0]
     np.testing.assert_allclose(found.electrical_energy_j[0], taken, rtol=1e-12)
-    assert 0.0 < found.hops_per_minute <= 60.0 / found.period_s[-1] + 1e-9
+    # Over a period, the hotter winding sheds the heat of its hop and of standing for the rest of it.
+    current_a = robots.continuous_torque_n_m[0] / (robots.ratio[0] * robots.torque_constant_n_m_per_a[0])
+    allowed_w = 1.1572 * robots.winding_resistance_ohm[0] * current_a**2  # copper, 40 K warmer
+    period_s, hop_s = 60.0 / found.hops_per_minute, found.period_s[-1]
+    made_j = found.winding_heat_j[-1] + found.standing_heat_w * (period_s - hop_s)
+    assert period_s > hop_s
+    np.testing.assert_allclose((made_j / (allowed_w * period_s)).max(), 1.0, rtol=1e-6)
     assert found.hops_per_minute < jump.sustained_jumps_per_minute[0]
