@@ -47,7 +47,7 @@ JUMPS = 3000
 MOST_DESIGNS = 12
 """Designs of a front, thinned evenly, if none are named. Our own choice: some minutes on two cores."""
 _POPULATION, _FEW = 12, 6
-_SIGMA, _FINE_SIGMA = 0.2, 0.08
+_SIGMA, _HIGH_SIGMA, _FINE_SIGMA = 0.2, 0.3, 0.08  # of energies, of heights, of both in the end
 _TIMES_S = (0.05, 1.0)
 _STEEP = 8.0  # energy that a missing height costs, in units of what the virtual leg needs per height
 _MARGIN_M = 1e-4  # searched above the height that is asked for, so that the end of a search lies on the right side
@@ -183,7 +183,8 @@ def _searched(hardware: _Hardware, goal: _Goal, start: Floats, jumps: int, seed:
     """
     wide = _widened(_FEW)
     point, (_, (least, *_)) = start, goal.cost(hardware(start[None]))
-    stages = ((wide, np.linalg.lstsq(wide, start, rcond=None)[0], _SIGMA), (np.eye(len(start)), None, _FINE_SIGMA))
+    sigma = _HIGH_SIGMA if goal.at_least_m is None else _SIGMA
+    stages = ((wide, np.linalg.lstsq(wide, start, rcond=None)[0], sigma), (np.eye(len(start)), None, _FINE_SIGMA))
     for stage, (matrix, first, sigma) in enumerate(stages):
         begin = np.clip(point if first is None else first, 0.0, 1.0)
         strategy = cma_es(begin, sigma, _POPULATION, np.random.default_rng((*seed, stage)))
