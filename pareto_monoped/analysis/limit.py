@@ -49,6 +49,7 @@ MOST_DESIGNS = 12
 _POPULATION, _FEW = 12, 6
 _SIGMA, _HIGH_SIGMA, _FINE_SIGMA = 0.2, 0.3, 0.08  # of energies, of heights, of both in the end
 _TIMES_S = (0.05, 1.0)
+_COMPRESSION = 1.0  # of a bumper, as a share of its travel, up to which a jump counts
 _STEEP = 8.0  # energy that a missing height costs, in units of what the virtual leg needs per height
 _MARGIN_M = 1e-4  # searched above the height that is asked for, so that the end of a search lies on the right side
 
@@ -156,7 +157,7 @@ class _Goal:
 
     def missed(self, jumps: Evaluations) -> Floats:
         """Return how far jumps miss what they must keep, shape (n,); 0 if they keep it, infinite without an apex."""
-        beyond = np.maximum(jumps.stop_compression_hip, jumps.stop_compression_knee) - 1.0
+        beyond = np.maximum(jumps.stop_compression_hip, jumps.stop_compression_knee) - _COMPRESSION
         missed = np.maximum(beyond, 0.0)
         for name in REQUIRED_MEASURES if self.held else ():
             missed = missed + np.maximum(1.0 - np.nan_to_num(jumps.of(name), nan=0.0), 0.0)
