@@ -53,7 +53,7 @@ EVERY_TRIAL: tuple[str, ...] = ("mass_kg", "foot_clearance_m", "joule_heat_j")
 """Measures that the page has of every trial as plain numbers beside the objectives; the others are packed."""
 
 
-def quantities_of(robust: Sequence[str], variables: Sequence[Variable]) -> tuple[Quantity, ...]:
+def quantities_of(robust: Sequence[str], variables: Sequence[Variable] = ()) -> tuple[Quantity, ...]:
     """``QUANTITIES``, measures under uncertainty and own functions by name, and the knots among some variables."""
     knots = (_of_variable(variable) for variable in variables if variable not in VARIABLES)
     return (*QUANTITIES, *knots, *(_of(measure(name)) for name in robust))
