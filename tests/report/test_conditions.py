@@ -21,7 +21,7 @@ from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
 
-SETS = pytest.mark.parametrize("sets", [150, pytest.param(500, marks=pytest.mark.long)])
+SETS = pytest.mark.parametrize("sets", [60, pytest.param(500, marks=pytest.mark.long)])
 """How many sets of conditions are drawn."""
 STUDIES = {
     "mechanical": {"seed": 1},
