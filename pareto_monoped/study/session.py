@@ -31,7 +31,8 @@ from pareto_monoped.storage.reader import StudyData
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.simulator import Evaluate
 
-_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+_HANGUP = getattr(signal, "SIGHUP", None)  # Windows has none
+_SIGNALS = [number for number in (signal.SIGINT, signal.SIGTERM, _HANGUP) if number is not None]
 
 
 class Interrupt:
@@ -48,7 +49,7 @@ class Interrupt:
     def __enter__(self) -> "Interrupt":
         if self._main:
             # What began with SIGHUP ignored (nohup) shall outlive its terminal.
-            numbers = [n for n in _SIGNALS if n != signal.SIGHUP or signal.getsignal(n) is not signal.SIG_IGN]
+            numbers = [n for n in _SIGNALS if n != _HANGUP or signal.getsignal(n) is not signal.SIG_IGN]
             self._before = {number: signal.signal(number, self._first) for number in numbers}
         return self
 
