@@ -78,6 +78,15 @@ class Progress:
     #: What the designs that reach ``HEADLINE_HEIGHT_M`` cost; None for objectives without a height
     at_height: AtHeight | None
 
+    def text(self) -> str:
+        """Return it in words, as a bar shows it."""
+        headline = f", {self.at_height.text()}" if self.at_height else ""
+        minutes, seconds = divmod(round(self.seconds_left), 60)
+        return (
+            f"{self.evaluations}/{self.budget}, {self.per_second:.0f}/s, {minutes}:{seconds:02d} left, "
+            f"hypervolume {self.hypervolume:.2f}{headline}"
+        )
+
 
 class Session:
     """One session of a study: from the state in its database until something says stop."""

@@ -16,6 +16,10 @@ from pareto_monoped.errors import ParetoMonopedError
 
 ROOT = Path(__file__).parents[2]
 FUNCTIONS = [name for name in pm.__all__ if callable(getattr(pm, name))]
+RETURNED = {
+    "Actuator", "ActuatorMap", "Alternative", "Measure", "PaperCase", "Progress", "Robot", "Variable", "Verification",
+}  # fmt: skip
+"""Classes that are public for annotations: nobody makes their objects but the functions that return them."""
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +83,8 @@ def test_every_function_says_what_it_takes_gives_and_raises(name):
         described = text.partition("Args:")[2].partition("Raises:")[0]
         for parameter in inspect.signature(thing).parameters:
             assert parameter in described or len(inspect.signature(thing).parameters) == 1, parameter
-    assert "Example:" in text
+    error = isinstance(thing, type) and issubclass(thing, Exception)
+    assert "Example:" in text or name in RETURNED or error
 
 
 @pytest.mark.parametrize("name", [name for name in pm.__all__ if not callable(getattr(pm, name)) and name.isupper()])
