@@ -77,3 +77,12 @@ def test_a_check_writes_nothing_and_names_what_would_change(script, tmp_path, mo
     with pytest.raises(SystemExit) as caught:
         script.main()
     assert caught.value.code == 0
+
+
+def test_how_long_something_took_stays_as_shown(script, tmp_path):
+    command = "printf 'a 20/20 1.500 m J   0.8 s   finished\\nb 2 m\\n'"
+    page = f"```console\n$ {command}\na 20/20 1.500 m J   7.2 s   finished\nb 1 m\n```\n"
+    new, _ = script.with_outputs(page, tmp_path)
+    assert new == page.replace("b 1 m", "b 2 m")
+    page = page.replace("1.500 m J   7.2", "1.400 m J   7.2")
+    assert "1.500 m J   0.8 s" in script.with_outputs(page, tmp_path)[0].split("\n", 2)[2]
