@@ -260,14 +260,17 @@ def film(
         >>> pm.film(pm.PAPER_CASES["C"].design, "case_c.gif")  # doctest: +SKIP
     """
     require_extra("cad", "CAD")
+    from pareto_monoped.cad.film import VIDEOS, require_video, write_gif, write_video
     from pareto_monoped.cad.film import film as pictures_of
-    from pareto_monoped.cad.film import require_gif, require_video, write_gif, write_video
 
     path, replace, pace = as_path(out, "out"), truth_of("force", force), number_of("slower", slower)
     if not 1.0 <= pace <= 100.0:
         raise InputError(complaint("slower", slower, "1 to 100", "correct it"))
     is_gif = path.suffix.lower() == ".gif"
-    (require_gif if is_gif else require_video)(path)
+    if not is_gif:
+        if path.suffix.lower() not in VIDEOS:
+            raise InputError(complaint("out", str(path), f"a file ending in .gif, {' or '.join(VIDEOS)}", "correct it"))
+        require_video(path)
     steps = trace(
         design,
         motor=motor,
