@@ -31,10 +31,11 @@ from pareto_monoped.jump.calibration import (
 from pareto_monoped.jump.calibration import load_calibration as shipped_calibration
 from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION
 from pareto_monoped.measures import GOAL_NAMES, is_own, near_measures
-from pareto_monoped.pareto import selectors
 
 if TYPE_CHECKING:
     from pandas import DataFrame
+
+    from pareto_monoped.pareto import selectors
 
 
 def executor_of(given: Any) -> Any:
@@ -275,8 +276,10 @@ def ways_of(
     nearest: Mapping[str, float] | None,
     least: str | None,
     most: str | None,
-) -> list[selectors.Chooser]:
+) -> "list[selectors.Chooser]":
     """Return the ways to choose that are asked for; more than one, or an unknown one, is a ``SelectionError``."""
+    from pareto_monoped.pareto import selectors
+
     ways: list[selectors.Chooser] = []
     if by is not None:
         if not isinstance(by, str) or by not in ("knee", "tradeoff"):
@@ -305,8 +308,10 @@ def conditions_of(
     max_energy_j: float | None,
     at_least: Mapping[str, float] | None,
     at_most: Mapping[str, float] | None,
-) -> tuple[selectors.Condition | selectors.MaxEnergy, ...]:
+) -> "tuple[selectors.Condition | selectors.MaxEnergy, ...]":
     """Return the conditions that are asked for; an unknown name is a ``SelectionError``."""
+    from pareto_monoped.pareto import selectors
+
     found: list[selectors.Condition | selectors.MaxEnergy] = []
     if min_height_m is not None:
         least = number_of("min_height_m", min_height_m)
@@ -329,10 +334,12 @@ def _named(what: str, values: Any) -> dict[str, float]:
 
 
 def _known_name(what: str, name: Any) -> str:
+    from pareto_monoped.pareto.selectors import CONDITION_NAMES
+
     if not isinstance(name, str):
         raise SelectionError(complaint(what, name, "the name of a measure or a variable", "give one"))
-    if name not in selectors.CONDITION_NAMES and not is_own(name):
-        cure = near_measures(name, selectors.CONDITION_NAMES)
+    if name not in CONDITION_NAMES and not is_own(name):
+        cure = near_measures(name, CONDITION_NAMES)
         raise SelectionError(f"{what} = {name!r}: must be a measure or a variable; {cure}")
     return name
 
