@@ -87,7 +87,13 @@ def test_every_public_function_is_tried(made):
 
 @pytest.mark.parametrize(
     "name",
-    [*(name for name in pm.__all__ if inspect.isfunction(getattr(pm, name))), "Study.define", "StoredStudy.pick"],
+    [
+        pytest.param(name, marks=pytest.mark.long if name == "sensitivity" else ())  # whose right values take long
+        for name in (
+            *(name for name in pm.__all__ if inspect.isfunction(getattr(pm, name))),
+            *("Study.define", "StoredStudy.pick"),
+        )
+    ],
 )
 def test_a_value_of_a_wrong_type_is_refused_in_our_words(name, made, tmp_path, monkeypatch):
     right, folder, stored = made
