@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 from scipy.linalg import block_diag
 
-from pareto_monoped.actuator.ratiomap import JointMaps
+from pareto_monoped.actuator.ratiomap import Maps
 from pareto_monoped.compute.chunks import cores
 from pareto_monoped.design import (
     ALL_DEFAULTS,
@@ -113,7 +113,7 @@ class Limit:
 class _Hardware:
     """Jumps of one design's hardware with profiles, points of the unit cube of shape (n, 25)."""
 
-    def __init__(self, design: Floats, maps: JointMaps, calibration: Calibration, energy: str, workers: int) -> None:
+    def __init__(self, design: Floats, maps: Maps, calibration: Calibration, energy: str, workers: int) -> None:
         self.design, self.maps, self.energy = design, maps, energy
         self.virtual, self.calibration = calibration, calibration.under(LAW)
         self._evaluator = Evaluator(maps, self.calibration, workers)
@@ -210,7 +210,7 @@ def _widened(knots: int) -> Floats:
 
 def limit_of(
     design: Floats,
-    maps: JointMaps,
+    maps: Maps,
     calibration: Calibration,
     *,
     energy: str = ENERGIES[0],
