@@ -1,8 +1,9 @@
-"""The best torque found for four robots of an earlier version, under the calibration ``reference-3``.
+"""The best torque found for six robots of an earlier version, under the calibration ``reference-3``.
 
-``benchmarks/data/limit_robots.json`` has the robots with the gearboxes of their time: those of the least energy at two
-heights, of the least energy from the battery there, the paper's C, and the highest of the main job's front. The search is that of ``pareto-monoped limit`` without
-strength; the jumps are MuJoCo's, because ``reference-3`` is none for the compiled engine.
+``benchmarks/data/limit_robots.json`` has the robots with the gearboxes of their time: of the least energy at two
+heights, the paper's C, of the least energy from the battery, and the highest of the main job's front. The search is
+that of ``pareto-monoped limit`` without strength; the jumps are MuJoCo's, as the compiled engine has none of
+``reference-3``.
 
     python benchmarks/limit_reference_3.py [--jumps N] [--seed N]
 """

@@ -3,8 +3,8 @@
 Order and symbols of the first seven are those of the paper (section III-B): Y = [l1, l2, g_k, g_h, K, C, T]. The
 others are optional: each has a default that leaves the paper's controller as it is, and a study may free them.
 
-``VARIABLES`` is a tuple of ``Variable`` records, in the order of the columns of every array of designs. ``PAPER_CASES``
-has a ``PaperCase`` for each row of Table I, by its name.
+``VARIABLES`` has the ``Variable`` records in the order of the columns of every array of designs, and by name.
+``PAPER_CASES`` has a ``PaperCase`` for each row of Table I, by its name.
 
 Example:
     >>> from pareto_monoped import PAPER_CASES, VARIABLES
@@ -16,17 +16,18 @@ Example:
     (['nominal', 'A', 'B', 'C'], 0.49, 0.8)
 """
 
+import difflib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import wraps
 from numbers import Real
-from typing import Any, Literal, TypeVar, get_args
+from typing import Any, Literal, Protocol, SupportsIndex, TypeVar, get_args, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pareto_monoped.errors import DesignError, complaint, unknown_name
+from pareto_monoped.errors import DesignError, InputError, complaint, unknown_name
 
 _T = TypeVar("_T")
 Floats = NDArray[np.float64]
@@ -50,6 +51,34 @@ class Variable:
     decimals: int = field(repr=False)  #: decimals in reports, in the shown unit
     scale: float = field(repr=False)  #: factor from ``unit`` to the shown one
     factor: str = field(repr=False)  #: what a sensitivity calls it among what moves a design
+
+
+_R = TypeVar("_R", bound="_Named")
+
+
+class _Named(Protocol):
+    @property
+    def name(self) -> str: ...
+
+
+class Records(tuple[_R, ...]):
+    """Records in their order, which are also found by their names: ``VARIABLES["knee_ratio"]``."""
+
+    __slots__ = ()
+
+    @overload
+    def __getitem__(self, key: SupportsIndex | str, /) -> _R: ...
+    @overload
+    def __getitem__(self, key: slice, /) -> tuple[_R, ...]: ...
+    def __getitem__(self, key: SupportsIndex | str | slice, /) -> _R | tuple[_R, ...]:
+        """Return the record of a name or at a place; raise ``InputError`` for a name that none has."""
+        if not isinstance(key, str):
+            return super().__getitem__(key)
+        found = next((one for one in self if one.name == key), None)
+        if found is None:
+            near = difflib.get_close_matches(key, [one.name for one in self], n=1)
+            raise InputError(f"name = {key!r}: is unknown; {f'did you mean {near[0]!r}?' if near else 'correct it'}")
+        return found
 
 
 BASE_START_HEIGHT_M = 0.5  #: Height of the base above the floor at rest (paper, section IV-B).
@@ -90,7 +119,7 @@ def _variable(
 _MM, _TO_ONE = ("mm", 1000.0), (": 1", 1.0)
 
 # fmt: off
-VARIABLES: tuple[Variable, ...] = (
+VARIABLES: Records[Variable] = Records((
     _variable("thigh_length_m", "l1", "m", (0.3, 0.5), "thigh, hip axis to knee axis", "thigh length", 1, shown=_MM,
         factor="length of the thigh"),
     _variable("shank_length_m", "l2", "m", (0.3, 0.5), "shank, knee axis to foot centre", "shank length", 1, shown=_MM,
@@ -110,7 +139,7 @@ VARIABLES: tuple[Variable, ...] = (
         default=REST_LENGTH_M),
     _variable("start_height_m", "z0", "m", (0.35, 0.7), "height of the base above the floor at rest", "start height", 0,
         shown=_MM, default=BASE_START_HEIGHT_M),
-)
+))
 # fmt: on
 """The records of all design variables, the paper's seven first; each has name, unit, bounds, meaning and default."""
 MOST_KNOTS = 12  #: Of a torque profile, per joint.
@@ -330,15 +359,22 @@ class Design:
             raise DesignError(complaint("shape of a design", array.shape, shape, "give one design"))
         return cls(**dict(zip(ALL_NAMES, complete(array).tolist(), strict=False)))
 
-    def replace(self, changes: Mapping[str, float]) -> "Design":
-        """Return a copy with some variables changed.
+    def replace(self, changes: Mapping[str, float] | None = None, /, **more: float) -> "Design":
+        """Return a copy with some variables changed, which are named in a mapping, or one by one.
 
         Raises:
             DesignError: an unknown name, or a value that no design can mean.
+
+        Example:
+            >>> from pareto_monoped import PAPER_CASES
+            >>> PAPER_CASES["C"].design.replace(knee_ratio=6.0).knee_ratio
+            6.0
         """
+        changes = {} if changes is None else changes
         if not isinstance(changes, Mapping):
             allowed = "a mapping of variables to numbers, such as {'knee_ratio': 6.0}"
             raise DesignError(complaint("changes of a design", changes, allowed, "give one"))
+        changes = {**changes, **more}
         for name in changes:
             if name not in ALL_NAMES:
                 raise DesignError(unknown_name("design variable", name, NAMES))

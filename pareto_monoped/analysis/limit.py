@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 from scipy.linalg import block_diag
 
-from pareto_monoped.actuator.ratiomap import JointMaps
+from pareto_monoped.actuator.ratiomap import Maps
 from pareto_monoped.compute.chunks import cores
 from pareto_monoped.design import (
     ALL_DEFAULTS,
@@ -47,8 +47,9 @@ JUMPS = 3000
 MOST_DESIGNS = 12
 """Designs of a front, thinned evenly, if none are named. Our own choice: some minutes on two cores."""
 _POPULATION, _FEW = 12, 6
-_SIGMA, _FINE_SIGMA = 0.2, 0.08
+_SIGMA, _HIGH_SIGMA, _FINE_SIGMA = 0.2, 0.3, 0.08  # of energies, of heights, of both in the end
 _TIMES_S = (0.05, 1.0)
+_COMPRESSION = 1.0  # of a bumper, as a share of its travel, up to which a jump counts
 _STEEP = 8.0  # energy that a missing height costs, in units of what the virtual leg needs per height
 _MARGIN_M = 1e-4  # searched above the height that is asked for, so that the end of a search lies on the right side
 
@@ -112,7 +113,7 @@ class Limit:
 class _Hardware:
     """Jumps of one design's hardware with profiles, points of the unit cube of shape (n, 25)."""
 
-    def __init__(self, design: Floats, maps: JointMaps, calibration: Calibration, energy: str, workers: int) -> None:
+    def __init__(self, design: Floats, maps: Maps, calibration: Calibration, energy: str, workers: int) -> None:
         self.design, self.maps, self.energy = design, maps, energy
         self.virtual, self.calibration = calibration, calibration.under(LAW)
         self._evaluator = Evaluator(maps, self.calibration, workers)
@@ -156,7 +157,7 @@ class _Goal:
 
     def missed(self, jumps: Evaluations) -> Floats:
         """Return how far jumps miss what they must keep, shape (n,); 0 if they keep it, infinite without an apex."""
-        beyond = np.maximum(jumps.stop_compression_hip, jumps.stop_compression_knee) - 1.0
+        beyond = np.maximum(jumps.stop_compression_hip, jumps.stop_compression_knee) - _COMPRESSION
         missed = np.maximum(beyond, 0.0)
         for name in REQUIRED_MEASURES if self.held else ():
             missed = missed + np.maximum(1.0 - np.nan_to_num(jumps.of(name), nan=0.0), 0.0)
@@ -183,7 +184,8 @@ def _searched(hardware: _Hardware, goal: _Goal, start: Floats, jumps: int, seed:
     """
     wide = _widened(_FEW)
     point, (_, (least, *_)) = start, goal.cost(hardware(start[None]))
-    stages = ((wide, np.linalg.lstsq(wide, start, rcond=None)[0], _SIGMA), (np.eye(len(start)), None, _FINE_SIGMA))
+    sigma = _HIGH_SIGMA if goal.at_least_m is None else _SIGMA
+    stages = ((wide, np.linalg.lstsq(wide, start, rcond=None)[0], sigma), (np.eye(len(start)), None, _FINE_SIGMA))
     for stage, (matrix, first, sigma) in enumerate(stages):
         begin = np.clip(point if first is None else first, 0.0, 1.0)
         strategy = cma_es(begin, sigma, _POPULATION, np.random.default_rng((*seed, stage)))
@@ -208,7 +210,7 @@ def _widened(knots: int) -> Floats:
 
 def limit_of(
     design: Floats,
-    maps: JointMaps,
+    maps: Maps,
     calibration: Calibration,
     *,
     energy: str = ENERGIES[0],

@@ -5,12 +5,13 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
 from pareto_monoped.compute.chunks import AT_ONCE, cores, in_turn
+from pareto_monoped.definition.study import Study
 from pareto_monoped.design import designs_of
 from pareto_monoped.errors import InputError, SelectionError, StudyError, complaint
 from pareto_monoped.jump.evaluate import Evaluator
@@ -23,7 +24,7 @@ from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.simulator import stored_simulator
 from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES, Samples, sobol_samples, variations
-from pareto_monoped.uncertainty.settings import DEFAULT_SEED, MOST_FAILED, Uncertainty
+from pareto_monoped.uncertainty.settings import DEFAULT_SEED, MOST_FAILED, Sampling, Uncertainty, load_uncertainty
 from pareto_monoped.uncertainty.statistics import Robustness, robustness
 
 LEAST_SAMPLES = 256
@@ -194,3 +195,26 @@ def robust_front(data: StudyData, trials: RobustTrials) -> pd.DataFrame:
         )
     mask = front_within(rows, (), objectives, able)
     return rows[mask].sort_values(objectives.names[0], kind="stable", ignore_index=True)
+
+
+def as_built(
+    data: StudyData, stored: Mapping[int, Stored], *, notify: Callable[[str], object]
+) -> tuple[StudyData, RobustTrials]:
+    """Return a study whose trials are those of known robustness, with what they keep; refuse one without a front."""
+    trials = robust_trials(data, stored)
+    if trials.others:
+        notify(f"left out: {trials.others} trials with other ranges, samples or seed")
+    robust_front(data, trials)
+    return replace(data, trials=trials.rows), trials
+
+
+def sampling(
+    study: Study, ranges: Uncertainty | None, samples: int | None, seed: int | None
+) -> tuple[Uncertainty, int, int]:
+    """Return ranges, number of samples and seed that are asked for; those left out are the study's, or the shipped."""
+    own = study.uncertainty or Sampling(ranges=load_uncertainty())
+    return (
+        own.ranges if ranges is None else ranges,
+        max(own.samples, DEFAULT_SAMPLES) if samples is None else samples,
+        own.seed if seed is None else seed,
+    )

@@ -3,7 +3,6 @@
 import json
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -238,8 +237,11 @@ def pick(
     data = read_front(db)
     compared: RobustTrials | None = None
     if by_robust:
-        known, compared = _robust(db)
-        chosen = choose(replace(known, trials=compared.rows), wanted, notify=note)
+        from pareto_monoped.analysis.robustness import as_built
+        from pareto_monoped.storage.extra_rows import read_robustness
+
+        known, compared = as_built(read_study(db), read_robustness(db), notify=note)
+        chosen = choose(known, wanted, notify=note)
     else:
         chosen = choose_of(db, wanted, notify=note)
     rows, picked = chosen.rows, chosen.picked
@@ -293,20 +295,6 @@ def pick(
         if compared is not None:
             many = f"compared are the {len(compared.rows)} designs whose robustness is stored and that rarely fail"
             echo(wrapped(f"{many}; 'robust DB --trial N' adds others"))
-
-
-def _robust(db: StudyPlace) -> "tuple[StudyData, RobustTrials]":
-    """Return the study, and its trials by what is stored of their robustness; refuse them if they have no front."""
-    from pareto_monoped.analysis.robustness import robust_front, robust_trials
-    from pareto_monoped.storage.extra_rows import read_robustness
-    from pareto_monoped.storage.reader import read_study
-
-    data = read_study(db)
-    trials = robust_trials(data, read_robustness(db))
-    if trials.others:
-        note(f"left out: {trials.others} trials with other ranges, samples or seed")
-    robust_front(data, trials)
-    return data, trials
 
 
 def _print_alternatives(others: "tuple[Alternative, ...]", tolerance: float) -> None:

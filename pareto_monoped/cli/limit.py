@@ -94,8 +94,6 @@ def limit(
 
 def _print(found: "list[Limit]") -> None:
     """One row per design: its own jump, the floor, least energy, gap and greatest height, also if all parts hold."""
-    from pareto_monoped.measures import measure
-
     echo(f"{'':6} {'as designed':>15} {'floor':>7} {'least energy, J':>26} {'greatest height, m':>19}")
     heads = f"{'height':>7} {'J':>7} {'J':>7} {'any':>7} {'gap %':>6} {'held':>6} {'gap %':>5} {'any':>9} {'held':>9}"
     echo(f"{'trial':>6} {heads}")
@@ -105,7 +103,7 @@ def _print(found: "list[Limit]") -> None:
         echo(f"{one.trial:6d} {own} {gaps} {one.greatest.height_m:9.3f} {_height(one.greatest_held)}")
     echo(
         wrapped(
-            f"energy: {measure(found[0].energy).label}; gap: what the best torque found saves of it at the design's "
+            f"energy: {found[0].energy}; gap: what the best torque found saves of it at the design's "
             "height; held: no part is overloaded; floor: what no controller can go below"
         )
     )

@@ -274,7 +274,7 @@ def _jumped(population: Population, calibration: Calibration, damping: Floats) -
     """
     from mujoco.batch import SimulationError
 
-    from pareto_monoped.jump.callback import controlled
+    from pareto_monoped.jump.callback import controlled, untimed
     from pareto_monoped.jump.controller import DIVERGED, FLYING
 
     batch, status = population.batch, population.records["status"]
@@ -285,7 +285,7 @@ def _jumped(population: Population, calibration: Calibration, damping: Floats) -
     supplied, lost = np.zeros((2, len(status)))
     last_qpos, last_qvel = np.array(qpos), np.array(qvel)
     ids = np.arange(len(status))
-    with controlled():
+    with controlled(), untimed():
         while len(ids):
             before = qvel[ids]
             last_qpos[ids], last_qvel[ids] = qpos[ids], before

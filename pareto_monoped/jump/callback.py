@@ -46,6 +46,23 @@ def controlled() -> Iterator[None]:
         yield
 
 
+def _set_clock(wanted: int | None = None) -> int | None:
+    """Give MuJoCo a C function to read the time with, or none, and return which it had."""
+    clock = ctypes.c_void_p.in_dll(ctypes.CDLL(str(_library())), "mjcb_time")
+    before, clock.value = clock.value, wanted
+    return before
+
+
+_CLOCK = Setting(_set_clock, _set_clock)
+
+
+@contextmanager
+def untimed() -> Iterator[None]:
+    """Let MuJoCo not time the parts of its steps for its profiler, which takes a sixth of a step as small as ours."""
+    with _CLOCK.used():
+        yield
+
+
 _POSITION = types.CPointer(types.float64)
 _STATE = (types.voidptr, types.voidptr, _POSITION, types.int32)
 _get_state = types.ExternalFunction("mj_getState", types.void(*_STATE))

@@ -175,7 +175,7 @@ def law_of(given: Any, *, source: str, error: type[InputError] = InputError) -> 
         return given
     table = {"kind": given} if isinstance(given, str) else given
     kind = table.get("kind") if isinstance(table, Mapping) else table
-    if kind not in KINDS:
+    if not isinstance(kind, str) or kind not in KINDS:
         raise error(f"{source}: {unknown_name('controller', kind, KINDS)}")
     known: Any = _LAWS[kind]  # each of another class
     law: Law = checked(known, table, source=f"{source}, table [controller]", error=error)

@@ -123,14 +123,16 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
             published_link_kg_per_m=PUBLISHED_LINK_KG_PER_M,
         ),
         variables=[asdict(variable) for variable in variables],
-        quantities=quantities_of(names_of([source.data for source in sources], [card.robust for card in cards])),
+        quantities=quantities_of(
+            names_of([source.data for source in sources], [card.robust for card in cards]), variables
+        ),
         axes=_axes(cards),
         published=[
             {
                 "name": c.name,
                 "height_m": c.height_m,
                 "energy_j": c.energy_j,
-                "design": {variable.name: getattr(c.design, variable.name) for variable in variables},
+                "design": {one.name: c.design.as_dict().get(one.name, one.default) for one in variables},
             }
             for c in PAPER_CASES.values()
         ],

@@ -9,6 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from pareto_monoped.design import PAPER_CASES, control_of, designs_of
+from pareto_monoped.jump.laws import PAPER_LAW
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.report.packing import number
 from pareto_monoped.report.schema import Case
@@ -58,7 +59,7 @@ def resimulate(
         jumps |= of_trials(members, made)
     numbers = rows["trial"].astype(int).tolist()
     heights = zip(numbers, rows["height_m"].tolist(), strict=True)
-    cases, case_jumps = paper_cases(data.case_kit, data.calibration)
+    cases, case_jumps = paper_cases(data.case_kit, data.calibration.under(PAPER_LAW))
     return Resimulation(
         jumps={trial: jumps[trial] for trial in numbers if trial in jumps},
         cases=cases,

@@ -8,6 +8,7 @@ from click.testing import CliRunner
 
 import pareto_monoped as pm
 from pareto_monoped.actuator.search import map_for
+from pareto_monoped.analysis import limit as module
 from pareto_monoped.analysis.limit import LAW, chosen, limit_of, limits
 from pareto_monoped.cli import cli
 from pareto_monoped.definition.study import study_from_dict
@@ -63,6 +64,16 @@ def test_a_search_of_no_jumps_leaves_the_virtual_leg(case, holds):
     assert one.controller_gap >= 0.0
     assert one.greatest.height_m >= one.height_m
     assert (one.least_held is not None) is holds
+
+
+def test_a_jump_counts_that_presses_no_bumper_beyond_a_limit(monkeypatch, found):
+    """At a limit below what the highest jump needs, a lower one is found that keeps it."""
+    free = pm.simulate(found.greatest.design, controller=LAW.as_dict()).iloc[0]
+    assert free.stop_compression_knee > 0.4
+    monkeypatch.setattr(module, "_COMPRESSION", 0.4)
+    one = limit_of(LIGHT, map_for("VT8020"), REFERENCE, jumps=240)
+    kept = pm.simulate(one.greatest.design, controller=LAW.as_dict() if one.greatest.profile else None).iloc[0]
+    assert not one.greatest.profile or max(kept.stop_compression_hip, kept.stop_compression_knee) <= 0.4
 
 
 def test_the_number_of_workers_changes_no_number():

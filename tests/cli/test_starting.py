@@ -21,6 +21,11 @@ def test_every_shipped_study_can_be_had_and_read(name, tmp_path, monkeypatch, ca
     assert f"pareto-monoped run {name}.toml" in capsys.readouterr().err
 
 
+def test_both_libraries_and_the_papers_search_have_a_study():
+    shipped = {load_study(path).algorithm.name for path in STUDIES.glob("*.toml")}
+    assert {"surrogate", "nsga2", "optuna_tpe", "weighted_cmaes"} <= shipped
+
+
 def test_without_a_name_it_is_case_c_and_changes_of_the_user_stay(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert cli(["init"]) == 0

@@ -12,7 +12,7 @@ import pytest
 from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import callback, controller_record, planar, single
 from pareto_monoped.jump.calibration import load_calibration
-from pareto_monoped.jump.callback import controlled
+from pareto_monoped.jump.callback import controlled, untimed
 from pareto_monoped.jump.evaluate import evaluate_robots
 from tests.jump.robots import plausible_robots, random_designs
 
@@ -65,6 +65,20 @@ def test_nothing_stays_installed():
     with pytest.raises(ZeroDivisionError), controlled():
         raise ZeroDivisionError
     assert mujoco.get_mjcb_control() is None
+
+
+def test_mujoco_reads_no_clock_meanwhile_and_does_again_later():
+    def timed_s():
+        model = mujoco.MjModel.from_xml_string(PENDULUM.format(user=0))
+        data = mujoco.MjData(model)
+        for _ in range(50):
+            mujoco.mj_step(model, data)
+        return data.timer[int(mujoco.mjtTimer.mjTIMER_STEP)].duration
+
+    assert timed_s() > 0.0
+    with untimed(), untimed():
+        assert timed_s() == 0.0
+    assert timed_s() > 0.0
 
 
 def test_calibrations_on_several_threads_do_not_meet():
