@@ -180,10 +180,11 @@ def test_loads_of_elastic_drives_are_those_of_the_documented_one(which):
 
 
 def landed_by_hand(designs, calibration):
-    """Time to rest, work of the motors given and taken, their heat, and peak loads, from the package's state at the apex; a row each.
+    """Time to rest, work given and taken by the motors, their heat, and peak loads; a row each.
 
-    From its own apex, by 0.1 ms earlier or later, the control periods would begin elsewhere, and with them would the
-    command that follows touchdown: 1 ms more or less of the posture's torque moves the hip's peak by up to 10 percent.
+    They start in the package's state at the apex. From an apex of their own, 0.1 ms earlier or later, the control periods
+    would begin elsewhere, and with them would the command that follows touchdown: 1 ms more or less of the posture's
+    torque moves the hip's peak by up to 10 percent.
     """
     robots = robot_arrays(designs, map_for("VT8020"), calibration.mass)
     population = population_of(robots, control_of(designs), start_pose(robots, calibration), calibration)

@@ -15,6 +15,7 @@ from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.landing import LANDING, Landing, best_landed, course, hops, landed, landing_records
 from pareto_monoped.jump.model import start_pose
 from pareto_monoped.jump.single import moments
+from pareto_monoped.jump.torques import lower
 from pareto_monoped.jump.variations import take
 from pareto_monoped.measures import LANDING_MEASURES
 from pareto_monoped.robot.population import robot_arrays
@@ -128,17 +129,40 @@ def test_hops_become_steady_and_their_rate_is_that_of_the_windings():
     found = hops(robots, control_of(CASES[[3]]), ELASTIC, 15)
     assert found.reason == ""
     assert 0 < found.steady_from < 12
+    assert found.hops_per_minute < Evaluator(MAP, ELASTIC)(CASES[[3]]).sustained_jumps_per_minute[0]
     assert found.height_m[0] == Evaluator(MAP, ELASTIC)(CASES[[3]]).height_m[0]
     one = landed(CASES[[3]], MAP, ELASTIC)
     jump = Evaluator(MAP, ELASTIC)(CASES[[3]])
     np.testing.assert_allclose(found.energy_j[0], jump.energy_j[0] + one.landing_energy_j[0], rtol=1e-12)
     taken = jump.electrical_energy_j[0] + one.landing_electrical_energy_j[0]
     np.testing.assert_allclose(found.electrical_energy_j[0], taken, rtol=1e-12)
-    # Over a period, the hotter winding sheds the heat of its hop and of standing for the rest of it.
+    assert found.hops_per_minute == 60.0 / found.period_s[-1]  # the windings would bear more
+
+
+def test_windings_that_bear_less_make_hops_rarer():
+    """Over a period, the hotter winding sheds the heat of its hop and of standing for the rest of it."""
+    one = take(ROBOTS, np.array([3]))
+    robots = replace(one, continuous_torque_n_m=0.65 * one.continuous_torque_n_m)
+    found = hops(robots, control_of(CASES[[3]]), ELASTIC, 2)
     current_a = robots.continuous_torque_n_m[0] / (robots.ratio[0] * robots.torque_constant_n_m_per_a[0])
     allowed_w = 1.1572 * robots.winding_resistance_ohm[0] * current_a**2  # copper, 40 K warmer
     period_s, hop_s = 60.0 / found.hops_per_minute, found.period_s[-1]
     made_j = found.winding_heat_j[-1] + found.standing_heat_w * (period_s - hop_s)
-    assert period_s > hop_s
+    assert period_s > 1.1 * hop_s
     np.testing.assert_allclose((made_j / (allowed_w * period_s)).max(), 1.0, rtol=1e-6)
-    assert found.hops_per_minute < jump.sustained_jumps_per_minute[0]
+    cold = replace(one, continuous_torque_n_m=0.01 * one.continuous_torque_n_m)
+    assert hops(cold, control_of(CASES[[3]]), ELASTIC, 1).hops_per_minute == 0.0
+
+
+def test_the_leg_is_lowered_smoothly():
+    control = control_of(CASES)
+    population = population_of(ROBOTS, control, start_pose(ROBOTS, ELASTIC), ELASTIC)
+    population.run()
+    record = landing_records(ROBOTS, control, ELASTIC, LANDING, population.records.copy())[0]
+    way = []
+    for share in (-1.0, 0.0, 0.25, 0.5, 0.75, 1.0, 2.0):
+        record["steps"] = 1.0 + (0.3 + record["catch_s"] + share * 0.2) / record["timestep_s"]
+        record["touched_s"] = 0.3
+        lower(record)
+        way.append((record["catch_m"] - record["foot_m"][1]) / (record["catch_m"] - record["crouch_m"]))
+    np.testing.assert_allclose(way, [0.0, 0.0, 5 / 32, 0.5, 27 / 32, 1.0, 1.0], atol=1e-12)
