@@ -1,6 +1,6 @@
 """Stage 2: a robot becomes a MuJoCo model, jumps under a controller, and its jump is measured.
 
-Order of imports, lowest first: calibration_defaults, controller_record, quiet, rebound; torques; laws; calibration;
+Order of imports, lowest first: calibration_defaults, controller_record, quiet; torques; laws; calibration;
 controller, end_stops, rail_leg; callback, model; document, planar, variations; gravity, population; engines;
 evaluate, frames; peers, replay, shared, single; landing; balance; audit; screen, table1.
 """

@@ -100,7 +100,7 @@ def rebound_rad_per_s(stop: EndStop, speed_rad_per_s: float, inertia_kg_m2: floa
 
     The stop pushes and never pulls.
     """
-    from pareto_monoped.jump.rebound import rebound
+    from pareto_monoped.jump.torques import rebound
 
     stiffness, damping = stop.stiffness_n_m_per_rad, stop.damping_n_m_s_per_rad
     return float(rebound(speed_rad_per_s, stop.width_rad, stop.impedance, stiffness, damping, inertia_kg_m2))

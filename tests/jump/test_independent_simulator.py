@@ -182,7 +182,7 @@ def test_loads_of_elastic_drives_are_those_of_the_documented_one(which):
 def landed_by_hand(designs, calibration):
     """Time to rest, work given and taken by the motors, their heat, and peak loads; a row each.
 
-    They start in the package's state at the apex. From an apex of their own, 0.1 ms earlier or later, the control periods
+    They start in the package's state at the apex. From an apex of their own, 0.1 ms earlier or later, control periods
     would begin elsewhere, and with them would the command that follows touchdown: 1 ms more or less of the posture's
     torque moves the hip's peak by up to 10 percent.
     """
