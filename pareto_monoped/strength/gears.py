@@ -65,21 +65,22 @@ def strike_torques_n_m(structures: Sequence[Structure]) -> list[float]:
     return torques.tolist()
 
 
-def strike_life_jumps(s: Structure, torque_n_m: float) -> float:
-    """Return the jumps that an actuator's gears last if each of them strikes with this torque, at the safeties of their
-    duty.
+def strike_life_jumps(s: Structure, torque_n_m: float, safeties: tuple[float, float] | None = None) -> float:
+    """Return the jumps that an actuator's gears last if each strikes with this torque, at safeties of flanks and roots.
 
-    0 if they do not last a single one, ``MOST_JUMPS`` if they last that many; NaN under the rules ``paper``.
+    The safeties are by default those of their duty. 0 if they do not last a single one, ``MOST_JUMPS`` if they last
+    that many; NaN under the rules ``paper``.
     """
     if s.settings.rules == "paper":
         return float("nan")
     actuator, data = s.actuator, s.settings.parts.rating
     stage = build_stage(actuator.gears, actuator.motor, actuator.family, s.settings)
     share = torque_n_m / actuator.peak_torque_n_m
+    flank_safety, root_safety = safeties or (data.flank_safety, data.root_safety)
 
     def lasts(jumps: float) -> bool:
         flank, root = strike_safeties(stage, actuator.face_width_mm, share, jumps)
-        return bool(flank >= data.flank_safety and root >= data.root_safety)
+        return bool(flank >= flank_safety and root >= root_safety)
 
     low, high = 0.0, float(np.log10(MOST_JUMPS))
     if not lasts(1.0):

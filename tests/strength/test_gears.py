@@ -88,6 +88,12 @@ def test_gears_have_the_safety_of_their_duty_until_their_life_ends(ratio, share)
     # A ring that is nitrided has the steepest curve: a safety that is 2e-4 off moves its life by 0.4 percent.
     assert struck_safety(s, torque, jumps) == pytest.approx(1.0, rel=2e-4)
     assert struck_safety(s, torque, 1.1 * jumps) < 1.0 < struck_safety(s, torque, 0.9 * jumps)
+    # At a safety of 1 they last longer; there, gears that are asked no more have just what they are asked.
+    at_1 = strike_life_jumps(s, torque, (1.0, 1.0))
+    rating = replace(s.settings.parts.rating, flank_safety=1.0, root_safety=1.0)
+    bare = replace(s, settings=replace(s.settings, parts=replace(s.settings.parts, rating=rating)))
+    assert at_1 > jumps
+    assert struck_safety(bare, torque, at_1) == pytest.approx(1.0, rel=2e-4)
 
 
 def test_strikes_are_worse_in_every_jump_than_once_and_the_worse_the_more_jumps():
@@ -152,7 +158,10 @@ def test_rules_without_fatigue_know_no_life():
 
 
 def test_lives_are_told_with_two_digits():
-    told = [GearLife(jumps=jumps, duty_jumps=1e5).text for jumps in (0.0, 7.3, 7864.8, 142127.0, MOST_JUMPS)]
+    told = [
+        GearLife(jumps=0.0, jumps_at_1=jumps, duty_jumps=1e5).text_at_1
+        for jumps in (0.0, 7.3, 7864.8, 142127.0, MOST_JUMPS)
+    ]
     assert told == ["0", "7", "7900", "140000", "1e+09 or more"]
 
 

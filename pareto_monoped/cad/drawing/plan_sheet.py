@@ -12,14 +12,14 @@ from shapely.geometry import box
 from shapely.geometry.base import BaseGeometry
 
 from pareto_monoped.cad.drawing.bores import Bore, chamfer_text, number
-from pareto_monoped.cad.drawing.data_tables import DATUM, datum_fit, fit_table
-from pareto_monoped.cad.drawing.dimension import Mark, Tag, ladder, place_tags
+from pareto_monoped.cad.drawing.data_tables import fit_table
+from pareto_monoped.cad.drawing.dimension import DATUM, FRAME_MM, SECOND, Mark, Tag, datum_fit, ladder, place_tags
 from pareto_monoped.cad.drawing.end_view import draw_bore
 from pareto_monoped.cad.drawing.paper import DASHED, LETTER_MM, NARROW_MM, TIMES, WIDE_MM, Paper
 from pareto_monoped.cad.drawing.plan import Layer, Plan, cut_along, is_square, nodes, repeats, rounded_rectangle
 from pareto_monoped.cad.drawing.profile import polygons
 from pareto_monoped.cad.drawing.section import hatch
-from pareto_monoped.cad.drawing.sheet import table
+from pareto_monoped.cad.drawing.sheet import SCALES, scale_text, table
 from pareto_monoped.cad.shape.outlines import Contour, polygon
 from pareto_monoped.geometry.features import ShaftEnd
 from pareto_monoped.geometry.making import Fit
@@ -32,7 +32,15 @@ _DEPTH_MM = 18.0  # how far a ladder of lengths may reach below where it begins:
 _LETTER = "A"
 _AXIS_MM = 9.0  # length of the arrows of the origin's axes
 _SAME_MM = 1e-6
+_DETAIL = "Z"
+_UNREADABLE = "IORW"  # letters like figures, and those of bosses and windows
+_NEAR_MM, _MANY = 4.0, 8
+"""Holes with less than twice this distance on paper stand close together; so many of them make a detail view."""
+_APART_MM = 8.0  # from a view to its detail
 _ROWS = 34  # rows of a table before it goes on beside itself
+
+
+Circle = tuple[float, float, float]  #: x and y of its centre, and its radius
 
 
 def plan_view(plan: Plan, scale: float) -> Paper:
@@ -168,8 +176,81 @@ def plan_views(plan: Plan, scale: float, tags: Sequence[Tag]) -> list[Paper]:
     cut = _has_section(plan)
     if cut:
         section_marks(above, plan, scale)
+    crowd = _crowd(plan, scale)
+    near = [tag for tag in tags if crowd is not None and tag.height_mm == LETTER_MM and _inside(tag, crowd)]
+    if crowd is not None:
+        x, y, radius = (scale * value for value in crowd)
+        above.circle(x, y, radius)
+        tags = [*(tag for tag in tags if tag not in near), _tag(_DETAIL, crowd[0], crowd[1], crowd[2])]
     place_tags(above, [*axis_tags(scale), *tags], scale)
+    _box_datum(above)
+    if crowd is not None:
+        above = _with_detail(above, _detail(plan, crowd, _larger(scale), near))
     return [above, section_at(plan, scale)] if cut else [above]
+
+
+def _larger(scale: float) -> float:
+    return min(other for other in SCALES if other > scale)
+
+
+def _crowd(plan: Plan, scale: float) -> Circle | None:
+    """Return centre and radius around the holes that stand too close together on paper for their names, if any do.
+
+    A sheet at full size or above shows all of them well enough.
+    """
+    if scale >= 1.0:
+        return None
+    discs = [shapely.Point(x, y).buffer(bore.radius + _NEAR_MM / scale) for bore in plan.bores for x, y in bore.centres]
+    groups = [group for group in polygons(shapely.union_all(discs)) if sum(map(group.intersects, discs)) >= _MANY]
+    if not groups:
+        return None
+    found = max(groups, key=lambda group: sum(map(group.intersects, discs)))
+    circle = shapely.minimum_bounding_circle(found)
+    return circle.centroid.x, circle.centroid.y, shapely.minimum_bounding_radius(found)
+
+
+def _inside(tag: Tag, crowd: Circle) -> bool:
+    return bool(np.hypot(tag.x - crowd[0], tag.y - crowd[1]) < crowd[2])
+
+
+def _detail(plan: Plan, crowd: Circle, scale: float, tags: Sequence[Tag]) -> Paper:
+    """Return what is within a circle of the view from above at a larger scale, with its names."""
+    x, y, radius = (scale * value for value in crowd)
+    disc = shapely.Point(x, y).buffer(radius, quad_segs=64)
+    whole, paper = plan_view(plan, scale), Paper()
+    for stroke in whole.strokes:
+        line = shapely.LinearRing(stroke.points) if stroke.closed else shapely.LineString(stroke.points)
+        _lines(paper, line.intersection(disc), stroke.width_mm, stroke.dashes)
+    paper.fills += [fill for fill in whole.fills if disc.contains(shapely.Polygon(fill.points))]
+    paper.circle(x, y, radius)
+    place_tags(paper, tags, scale)
+    _box_datum(paper)
+    top = paper.box()[3]
+    paper.text(f"{_DETAIL}, {scale_text(scale)}", x, top + 3.0, height_mm=3.5, align="centre")
+    return paper
+
+
+def _with_detail(view: Paper, detail: Paper) -> Paper:
+    """Return a view and its detail below or beside it, where they take less room; the middle stands at y = 0."""
+    (left, low, right, high), (x0, y0, x1, y1) = view.box(), detail.box()
+    both = Paper()
+    if right - left > high - low:
+        middle = 0.5 * (high + low - (y1 - y0) - _APART_MM)
+        both.lay(view, 0.0, -middle)
+        both.lay(detail, 0.5 * (left + right) - 0.5 * (x0 + x1), low - _APART_MM - y1 - middle)
+    else:
+        both.lay(view, 0.0, -0.5 * (low + high))
+        both.lay(detail, right + _APART_MM - x0, -0.5 * (y0 + y1))
+    return both
+
+
+def _box_datum(paper: Paper) -> None:
+    """Draw the frame of a datum around its letter."""
+    for label in paper.labels:
+        if label.text == DATUM and label.height_mm == LETTER_MM:
+            x0, _, x1, _ = label.box()
+            x, y = 0.5 * (x0 + x1 - FRAME_MM), label.y - 0.5 * (FRAME_MM - LETTER_MM)
+            paper.line([(x, y), (x + FRAME_MM, y), (x + FRAME_MM, y + FRAME_MM), (x, y + FRAME_MM)], closed=True)
 
 
 def _has_section(plan: Plan) -> bool:
@@ -183,7 +264,7 @@ def plan_tables(plan: Plan, part: Part) -> tuple[list[Paper], list[Tag]]:
     alone = [any(fit.holds(diameter) for diameter in around) for fit in part.fits]
     first = datum_fit(part.fits)
     axis = first is not None and alone[part.fits.index(first)]
-    hole_rows, tags = _hole_rows(plan, DATUM if axis else None)
+    hole_rows, tags = _hole_rows(plan, first if axis else None)
     contour_rows, window_rows, node_tags = _contour_rows(plan, part)
     fits = fit_table(part.fits, alone)
     tables = [] if fits is None else [fits]
@@ -230,20 +311,33 @@ def _tables(title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> l
     return [table(title if k == 0 else f"{title}, continued", head, part) for k, part in enumerate(parts)]
 
 
-def _hole_rows(plan: Plan, datum: str | None) -> tuple[list[tuple[str, ...]], list[Tag]]:
-    """Return a row per hole or pattern: holes of one kind share a letter; ``datum`` is what positions refer to."""
+def _hole_rows(plan: Plan, datum: Fit | None) -> tuple[list[tuple[str, ...]], list[Tag]]:
+    """Return a row per hole or pattern, and names: holes of one kind share a letter, which is none of a datum.
+
+    Positions refer to the axis of the fit ``datum``. Without one, the first circle of fitted holes is the datum.
+    """
+    fitted = [bore for bore in plan.bores if bore.fit is not None and bore.count > 1 and bore.place_mm is not None]
+    pattern = fitted[0] if datum is None and fitted else None
     kinds: dict[str, list[Bore]] = {}
     for bore in plan.bores:
         kinds.setdefault(_kind(bore), []).append(bore)
     rows: list[tuple[str, ...]] = []
     tags: list[Tag] = []
-    for letter, (kind, members) in zip(ascii_uppercase, kinds.items(), strict=False):
+    for bore in [pattern] if pattern is not None else plan.bores:
+        if bore is pattern or (datum is not None and bore.count == 1 and datum.holds(2.0 * bore.radius)):
+            tags.append(_tag(DATUM, *min(bore.centres, key=lambda centre: (centre[0], centre[1])), bore.radius))
+            break
+    letters = (letter for letter in ascii_uppercase if letter not in (DATUM, SECOND, _DETAIL, *_UNREADABLE))
+    for letter, (kind, members) in zip(letters, kinds.items(), strict=False):
         for k, bore in enumerate(members, 1):
             name = f"{letter}{k}" if len(members) > 1 else letter
             x, y = float(bore.shape.x_mm), float(bore.shape.y_mm)
             zone = f"Ø{number(bore.place_mm)}" if bore.place_mm is not None else ""
-            place = f"{zone} {datum}" if zone and datum else zone
-            rows.append((name, kind, number(x), number(y), place))
+            if zone and bore is pattern:
+                zone = f"{zone}, datum {DATUM}"
+            elif zone and (datum is not None or pattern is not None):
+                zone = f"{zone} {DATUM}"
+            rows.append((name, kind, number(x), number(y), zone))
             rightmost = int(np.argmax(np.round([x + 0.1 * y for x, y in bore.centres], 6)))
             tags.append(_tag(name, *bore.centres[rightmost], bore.radius))
     return rows, tags
