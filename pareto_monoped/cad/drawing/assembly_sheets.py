@@ -95,7 +95,7 @@ def _views(side: Sequence[Seen], cuts: Sequence[tuple[str, list[Seen]]], scale: 
         paper = drawn(seen, at)
         extent = paper.box()
         balloons(paper, seen, at, [item for item, view in pointed.items() if view == k])
-        overall(paper, extent, at)
+        overall(paper, extent, at, high=k == 0)
         left, _, right, top = paper.box()
         paper.text(captions[k], 0.5 * (left + right), top + 6.0, height_mm=_CAPTION_MM, align="centre")
         papers.append(paper)

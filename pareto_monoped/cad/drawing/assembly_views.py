@@ -113,22 +113,22 @@ def drawn(seen: Sequence[Seen], scale: float) -> Paper:
     return paper
 
 
-def overall(paper: Paper, extent: Box, scale: float) -> None:
-    """Dimension how wide and how high a view is, beyond its balloons; ``extent`` is its box without them."""
-    (left, low, right, high), (outer, floor, _, _) = extent, paper.box()
+def overall(paper: Paper, extent: Box, scale: float, *, high: bool) -> None:
+    """Dimension how wide a view is, and how high if asked, beyond its balloons; ``extent`` is its box without them."""
+    (left, low, right, top), (outer, floor, _, _) = extent, paper.box()
     y, x = floor - _OVERALL_MM, outer - _OVERALL_MM
-    for at in (left, right):
+    for at, way in ((left, -1.0), (right, 1.0)):
         paper.line([(at, floor - GAP_MM), (at, y - OVERSHOOT_MM)])
-    for at in (low, high):
-        paper.line([(outer - GAP_MM, at), (x - OVERSHOOT_MM, at)])
+        paper.arrow(at, y, (way, 0.0))
     paper.line([(left, y), (right, y)])
-    paper.line([(x, low), (x, high)])
-    for end, way in ((left, -1.0), (right, 1.0)):
-        paper.arrow(end, y, (way, 0.0))
-    for end, way in ((low, -1.0), (high, 1.0)):
-        paper.arrow(x, end, (0.0, way))
     paper.text(number(round((right - left) / scale, 1)), 0.5 * (left + right), y + 1.0, align="centre")
-    paper.text(number(round((high - low) / scale, 1)), x - 1.0, 0.5 * (low + high), align="centre", upward=True)
+    if not high:
+        return
+    for at, way in ((low, -1.0), (top, 1.0)):
+        paper.line([(outer - GAP_MM, at), (x - OVERSHOOT_MM, at)])
+        paper.arrow(x, at, (0.0, way))
+    paper.line([(x, low), (x, top)])
+    paper.text(number(round((top - low) / scale, 1)), x - 1.0, 0.5 * (low + top), align="centre", upward=True)
 
 
 def within(seen: Sequence[Seen], low_mm: float, high_mm: float) -> list[Seen]:

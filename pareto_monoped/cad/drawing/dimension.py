@@ -128,12 +128,20 @@ def across(paper: Paper, x: float, half: float, text: str, *, edge: float) -> No
 
 
 def callout(
-    paper: Paper, lines: Sequence[str], x: float, y: float, tip: tuple[float, float], *, place: str | None = None
+    paper: Paper,
+    lines: Sequence[str],
+    x: float,
+    y: float,
+    tip: tuple[float, float],
+    *,
+    place: str | None = None,
+    letter: str = "",
 ) -> None:
     """Write text beside a shelf, with a leader to a feature.
 
     The first line stands on the shelf, whose left end is (x, y); the leader ends at ``tip``. ``place`` is a tolerance
-    of position and its datum, such as ``Ø0.1 A``, drawn as a frame below the text.
+    of position and its datum, such as ``Ø0.1 A``, drawn as a frame below the text. ``letter`` is the datum that the
+    feature itself is.
     """
     long = max(width_mm(line, LETTER_MM) for line in lines)
     paper.line([tip, (x - 3.0, y), (x + long + 1.0, y)])
@@ -142,7 +150,11 @@ def callout(
     for k, line in enumerate(lines[1:], 1):
         paper.text(line, x, y - k * 4.0 + 0.4)
     if place:
-        frame(paper, ["position", *place.split()], x, y - len(lines) * 4.0 - 1.8)
+        low = y - len(lines) * 4.0 - 1.8
+        wide = frame(paper, ["position", *place.split()], x, low)
+        if letter:
+            paper.line([(x + wide, low + 0.5 * FRAME_MM), (x + wide + 3.0, low + 0.5 * FRAME_MM)])
+            datum(paper, letter, x + wide + 3.0, low)
 
 
 def callout_height(lines: Sequence[str], place: str | None) -> float:

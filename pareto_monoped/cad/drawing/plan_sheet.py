@@ -4,6 +4,7 @@ The views have edges, numbered nodes and lettered holes.
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from string import ascii_uppercase
 
 import numpy as np
@@ -13,7 +14,17 @@ from shapely.geometry.base import BaseGeometry
 
 from pareto_monoped.cad.drawing.bores import Bore, chamfer_text, number
 from pareto_monoped.cad.drawing.data_tables import fit_table
-from pareto_monoped.cad.drawing.dimension import DATUM, FRAME_MM, SECOND, Mark, Tag, datum_fit, ladder, place_tags
+from pareto_monoped.cad.drawing.dimension import (
+    DATUM,
+    FRAME_MM,
+    SECOND,
+    Mark,
+    Tag,
+    datum,
+    datum_fit,
+    ladder,
+    place_tags,
+)
 from pareto_monoped.cad.drawing.end_view import draw_bore
 from pareto_monoped.cad.drawing.paper import DASHED, LETTER_MM, NARROW_MM, TIMES, WIDE_MM, Paper
 from pareto_monoped.cad.drawing.plan import Layer, Plan, cut_along, is_square, nodes, repeats, rounded_rectangle
@@ -29,13 +40,14 @@ from pareto_monoped.geometry.shapes import Arc, Pattern
 _NODE_MM = 1.8  # height of the numbers of nodes (ISO 3098-1, the smallest size)
 _LADDER_MM = 6.0
 _DEPTH_MM = 18.0  # how far a ladder of lengths may reach below where it begins: ten digits
-_LETTER = "A"
+_LETTER = "S"  # of the section, and of no datum
 _AXIS_MM = 9.0  # length of the arrows of the origin's axes
 _SAME_MM = 1e-6
 _DETAIL = "Z"
-_UNREADABLE = "IORW"  # letters like figures, and those of bosses and windows
+_UNREADABLE = "IORSW"  # letters like figures, and those of bosses, section and windows
 _NEAR_MM, _MANY = 4.0, 8
 """Holes with less than twice this distance on paper stand close together; so many of them make a detail view."""
+_WIDE_MM = 120.0  # width of a detail
 _APART_MM = 8.0  # from a view to its detail
 _ROWS = 34  # rows of a table before it goes on beside itself
 
@@ -182,15 +194,16 @@ def plan_views(plan: Plan, scale: float, tags: Sequence[Tag]) -> list[Paper]:
         x, y, radius = (scale * value for value in crowd)
         above.circle(x, y, radius)
         tags = [*(tag for tag in tags if tag not in near), _tag(_DETAIL, crowd[0], crowd[1], crowd[2])]
-    place_tags(above, [*axis_tags(scale), *tags], scale)
-    _box_datum(above)
+    _place_names(above, [*axis_tags(scale), *tags], scale)
     if crowd is not None:
-        above = _with_detail(above, _detail(plan, crowd, _larger(scale), near))
+        above = _with_detail(above, _detail(plan, crowd, _larger(scale, crowd[2]), near))
     return [above, section_at(plan, scale)] if cut else [above]
 
 
-def _larger(scale: float) -> float:
-    return min(other for other in SCALES if other > scale)
+def _larger(scale: float, radius_mm: float) -> float:
+    """Return the largest scale at which a detail is not too wide, or else the next one above the view's."""
+    found = [other for other in SCALES if other > scale and 2.0 * radius_mm * other <= _WIDE_MM]
+    return max(found, default=min(other for other in SCALES if other > scale))
 
 
 def _crowd(plan: Plan, scale: float) -> Circle | None:
@@ -223,8 +236,7 @@ def _detail(plan: Plan, crowd: Circle, scale: float, tags: Sequence[Tag]) -> Pap
         _lines(paper, line.intersection(disc), stroke.width_mm, stroke.dashes)
     paper.fills += [fill for fill in whole.fills if disc.contains(shapely.Polygon(fill.points))]
     paper.circle(x, y, radius)
-    place_tags(paper, tags, scale)
-    _box_datum(paper)
+    _place_names(paper, tags, scale)
     top = paper.box()[3]
     paper.text(f"{_DETAIL}, {scale_text(scale)}", x, top + 3.0, height_mm=3.5, align="centre")
     return paper
@@ -244,13 +256,14 @@ def _with_detail(view: Paper, detail: Paper) -> Paper:
     return both
 
 
-def _box_datum(paper: Paper) -> None:
-    """Draw the frame of a datum around its letter."""
-    for label in paper.labels:
-        if label.text == DATUM and label.height_mm == LETTER_MM:
-            x0, _, x1, _ = label.box()
-            x, y = 0.5 * (x0 + x1 - FRAME_MM), label.y - 0.5 * (FRAME_MM - LETTER_MM)
-            paper.line([(x, y), (x + FRAME_MM, y), (x + FRAME_MM, y + FRAME_MM), (x, y + FRAME_MM)], closed=True)
+def _place_names(paper: Paper, tags: Sequence[Tag], scale: float) -> None:
+    """Write names on a view; that of a datum stands in its frame, which is placed first as it takes more room."""
+    datums = [tag for tag in tags if tag.text == DATUM]
+    place_tags(paper, [replace(tag, height_mm=FRAME_MM) for tag in datums], scale)
+    for _ in datums:
+        x0, y0, x1, y1 = paper.labels.pop().box()
+        datum(paper, DATUM, 0.5 * (x0 + x1 - FRAME_MM), 0.5 * (y0 + y1 - FRAME_MM))
+    place_tags(paper, [tag for tag in tags if tag.text != DATUM], scale)
 
 
 def _has_section(plan: Plan) -> bool:
@@ -311,22 +324,25 @@ def _tables(title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> l
     return [table(title if k == 0 else f"{title}, continued", head, part) for k, part in enumerate(parts)]
 
 
-def _hole_rows(plan: Plan, datum: Fit | None) -> tuple[list[tuple[str, ...]], list[Tag]]:
+def _hole_rows(plan: Plan, axis: Fit | None) -> tuple[list[tuple[str, ...]], list[Tag]]:
     """Return a row per hole or pattern, and names: holes of one kind share a letter, which is none of a datum.
 
-    Positions refer to the axis of the fit ``datum``. Without one, the first circle of fitted holes is the datum.
+    Positions refer to the axis of the fit ``axis``. Without one, the first circle of fitted holes is the datum.
     """
     fitted = [bore for bore in plan.bores if bore.fit is not None and bore.count > 1 and bore.place_mm is not None]
-    pattern = fitted[0] if datum is None and fitted else None
+    pattern = fitted[0] if axis is None and fitted else None
     kinds: dict[str, list[Bore]] = {}
     for bore in plan.bores:
         kinds.setdefault(_kind(bore), []).append(bore)
     rows: list[tuple[str, ...]] = []
     tags: list[Tag] = []
     for bore in [pattern] if pattern is not None else plan.bores:
-        if bore is pattern or (datum is not None and bore.count == 1 and datum.holds(2.0 * bore.radius)):
+        if bore is pattern or (axis is not None and bore.count == 1 and axis.holds(2.0 * bore.radius)):
             tags.append(_tag(DATUM, *min(bore.centres, key=lambda centre: (centre[0], centre[1])), bore.radius))
             break
+    circles = [layer.outline.circle for layer in plan.layers if layer.outline.circle is not None and not tags]
+    for circle in [one for one in circles if axis is not None and axis.holds(2.0 * float(one.radius_mm))][:1]:
+        tags.append(_tag(DATUM, float(circle.x_mm), float(circle.y_mm), float(circle.radius_mm)))
     letters = (letter for letter in ascii_uppercase if letter not in (DATUM, SECOND, _DETAIL, *_UNREADABLE))
     for letter, (kind, members) in zip(letters, kinds.items(), strict=False):
         for k, bore in enumerate(members, 1):
@@ -335,7 +351,7 @@ def _hole_rows(plan: Plan, datum: Fit | None) -> tuple[list[tuple[str, ...]], li
             zone = f"Ø{number(bore.place_mm)}" if bore.place_mm is not None else ""
             if zone and bore is pattern:
                 zone = f"{zone}, datum {DATUM}"
-            elif zone and (datum is not None or pattern is not None):
+            elif zone and (axis is not None or pattern is not None):
                 zone = f"{zone} {DATUM}"
             rows.append((name, kind, number(x), number(y), zone))
             rightmost = int(np.argmax(np.round([x + 0.1 * y for x, y in bore.centres], 6)))
