@@ -146,6 +146,14 @@ def rated_bearing(inner_diameter_mm: float) -> RatedBearing:
     return found
 
 
+_SKF = {
+    "6800": "61800-2RZ", "6801": "61801-2RZ", "6802": "61802-2RZ", "6803": "61803-2RZ", "6804": "61804-2RZ",
+    "6805": "61805-2RZ", "6806": "61806-2RZ", "6807": "61807-2RZ", "6808": "61808-2RZ", "6809": "61809-2RZ",
+    "6810": "61810-2RZ", "6811": "61811-2RZ", "6812": "61812-2RZ", "6813": "61813-2RZ", "6814": "61814-2RZ",
+    "6815": "61815-2RZ", "6816": "61816-2RZ", "6817": "61817-2RZ", "6818": "61818-2RZ", "6819": "61819-2RZ",
+    "6820": "61820-2RZ",
+}  # fmt: skip
+"""SKF's bearings of the same size by the catalogue's designation."""
 _EXTRA_SMALL_MM = 10.0
 """Below this bore the maker has clearances of its own: MC5, 13 to 20 um, lies within the 8 to 23 um of C3."""
 
@@ -153,7 +161,7 @@ _EXTRA_SMALL_MM = 10.0
 def ordered_bearing(bore_mm: Numbers) -> tuple[Purchase, ...]:
     """Return the order of the catalogue's bearing with this bore: sealed, greased for life, of group C3; () for arrays.
 
-    The seals do not rub. Suffixes after the catalogues of NSK (VV), NTN (LLB) and SKF (2RZ, for bores from 10 mm).
+    The seals do not rub. Suffixes after the catalogues of NSK (VV), NTN (LLB) and SKF (2RZ).
     """
     if np.ndim(bore_mm):
         return ()
@@ -161,8 +169,8 @@ def ordered_bearing(bore_mm: Numbers) -> tuple[Purchase, ...]:
     name = bearing.designation
     size = f"{bore:g} x {bearing.outer_diameter_mm:g} x {bearing.width_mm:g} mm"
     small, others = bore < _EXTRA_SMALL_MM, [f"NTN {name}LLB/{CLEARANCE_GROUP}"]
-    if not small and name.startswith("68"):
-        others.append(f"SKF 61{name.removeprefix('6')}-2RZ/{CLEARANCE_GROUP}")
+    if name in _SKF:
+        others.append(f"SKF {_SKF[name]}/{CLEARANCE_GROUP}")
     return (
         Purchase(
             kind="bearing",

@@ -144,6 +144,14 @@ def _fastened(
             prisms=_end(side, d),
             places_mm=shifted(0.5 * pins_mm),
             grade=ALLOYS["c45_qt"],
+            purchases=(
+                Purchase(
+                    kind="pin",
+                    designation=f"bearing pin of roller chain ISO 606 - {d.chain.name}, {d.chain.pin_diameter_mm:g} mm",
+                    standard="ISO 606",
+                    remark="riveted into the fork",
+                ),
+            ),
             note=f"fork with {hand} {THREAD.name} - 6g stud, drawn as a square of its area; its pin goes through both "
             "cheeks and the chain's inner link and is riveted",
         ),

@@ -188,6 +188,7 @@ def _cast(d: LegDimensions) -> tuple[Purchase, ...]:
             unit="pack",
             remark="on the foot block's tongue",
         ),
+        Purchase(kind="release agent", designation="mould release wax", unit="pack"),
         Purchase(
             kind="pin",
             designation="parallel pin ISO 2338 - 4 m6 x 16 - St",

@@ -134,13 +134,13 @@ def callout(
     y: float,
     tip: tuple[float, float],
     *,
-    place: str | None = None,
+    place: Sequence[str] = (),
     letter: str = "",
 ) -> None:
     """Write text beside a shelf, with a leader to a feature.
 
     The first line stands on the shelf, whose left end is (x, y); the leader ends at ``tip``. ``place`` is a tolerance
-    of position and its datum, such as ``Ø0.1 A``, drawn as a frame below the text. ``letter`` is the datum that the
+    of position and its datum, drawn as a frame below the text. ``letter`` is the datum that the
     feature itself is.
     """
     long = max(width_mm(line, LETTER_MM) for line in lines)
@@ -151,13 +151,13 @@ def callout(
         paper.text(line, x, y - k * 4.0 + 0.4)
     if place:
         low = y - len(lines) * 4.0 - 1.8
-        wide = frame(paper, ["position", *place.split()], x, low)
+        wide = frame(paper, ["position", *place], x, low)
         if letter:
             paper.line([(x + wide, low + 0.5 * FRAME_MM), (x + wide + 3.0, low + 0.5 * FRAME_MM)])
             datum(paper, letter, x + wide + 3.0, low)
 
 
-def callout_height(lines: Sequence[str], place: str | None) -> float:
+def callout_height(lines: Sequence[str], place: Sequence[str]) -> float:
     """Return the distance from the top of a callout to the top of the next one."""
     return 4.0 * len(lines) + (6.0 if place else 0.0) + 3.0
 

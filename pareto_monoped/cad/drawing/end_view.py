@@ -106,9 +106,9 @@ def _callouts(paper: Paper, part: RoundPart, scale: float, datum: str | None, ou
         (
             bore,
             bore_lines(bore, from_above=part.from_above, far_side=not (bore.through or _visible(part, bore))),
-            " ".join(filter(None, (f"Ø{number(bore.place_mm)}", datum or (DATUM if own and bore is not own else None))))
-            if bore.place_mm is not None
-            else None,
+            ()
+            if bore.place_mm is None
+            else (f"Ø{number(bore.place_mm)}", *filter(None, (datum or (DATUM if own and bore is not own else None),))),
         )
         for bore in part.bores
     ]
