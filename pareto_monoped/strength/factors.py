@@ -17,7 +17,7 @@ from pareto_monoped.files import kept
 from pareto_monoped.geometry.shapes import Floats
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.strength import chain, drive, gears, knee, links, mounts, plates, stops, threads
-from pareto_monoped.strength.gears import MOST_JUMPS, strike_life_jumps
+from pareto_monoped.strength.gears import MOST_JUMPS, strike_life_jumps, struck_safeties
 from pareto_monoped.strength.groups import GROUP_MEASURES
 from pareto_monoped.strength.joint import (
     LOAD_NAMES,
@@ -211,35 +211,38 @@ class GearLife:
     """How long gears last that are struck in every jump as in the one simulated."""
 
     jumps: float  #: for which the weaker gearbox has the safety of its duty; 0 if for none, at most ``MOST_JUMPS``
-    jumps_at_1: float  #: the same for a safety of 1 against pits and broken teeth, which 99 of 100 gears outlast
     duty_jumps: float  #: what the gears are made for
+    flank_safety: float  #: least S_H against pits, if as many jumps as the duty has strike like this
+    root_safety: float  #: least S_F against broken teeth, likewise
+    asked: tuple[float, float]  #: S_H and S_F of the duty
 
     @property
     def text(self) -> str:
         """The number in words."""
-        return _in_words(self.jumps)
+        digits = max(0, int(np.log10(max(self.jumps, 1.0))) - 1)  # two that count
+        return f"{MOST_JUMPS:.0e} or more" if self.jumps >= MOST_JUMPS else f"{round(self.jumps, -digits):.0f}"
 
     @property
-    def text_at_1(self) -> str:
-        """The number at a safety of 1 in words."""
-        return _in_words(self.jumps_at_1)
+    def safeties(self) -> str:
+        """What the gears have against fatigue, and what their duty asks, in words."""
+        flank, root = self.asked
+        return (
+            f"{self.flank_safety:.2f} against pits, where their duty asks {flank:g}, and {self.root_safety:.2f} "
+            f"against broken teeth, where it asks {root:g}"
+        )
 
     @property
     def advice(self) -> str:
         """One line where the gears do not last as long as they should; '' otherwise."""
         if self.jumps >= self.duty_jumps:
             return ""
+        kept = f"for {self.text} jumps" if self.jumps > 0.0 else "in no number of jumps"
         return (
-            f"struck like this in every jump, the gears last {self.text_at_1} of {self.duty_jumps:.0f} jumps, and "
-            f"keep the safety of their duty against fatigue for {self.text}; gear_safety is that of a single strike; "
-            "choose heavier gearboxes, release the knee before its stop (knee_release_rad), or constrain "
-            "gear_strike_safety to at least 1"
+            f"struck like this in each of {self.duty_jumps:.0f} jumps, the gears have a safety of {self.safeties}; "
+            f"they have both {kept}, while gear_safety tells whether they survive a strike once; choose heavier "
+            "gearboxes, release the knee before its stop (knee_release_rad), or constrain gear_strike_safety to at "
+            "least 1"
         )
-
-
-def _in_words(jumps: float) -> str:
-    digits = max(0, int(np.log10(max(jumps, 1.0))) - 1)  # two that count
-    return f"{MOST_JUMPS:.0e} or more" if jumps >= MOST_JUMPS else f"{round(jumps, -digits):.0f}"
 
 
 def gear_life(design: Design, maps: Maps, loads: Loads) -> GearLife | None:
@@ -253,8 +256,11 @@ def gear_life(design: Design, maps: Maps, loads: Loads) -> GearLife | None:
         side: Structure(actuator=both.of(side).lookup(getattr(design, f"{side}_ratio")), leg=leg, settings=settings)
         for side in torques
     }
-    jumps, at_1 = (
-        min(strike_life_jumps(built[side], torque, safeties) for side, torque in torques.items())
-        for safeties in (None, (1.0, 1.0))
+    safeties = [struck_safeties(built[side], torque) for side, torque in torques.items()]
+    return GearLife(
+        jumps=min(strike_life_jumps(built[side], torque) for side, torque in torques.items()),
+        duty_jumps=settings.parts.duty.jumps,
+        flank_safety=min(flank for flank, _ in safeties),
+        root_safety=min(root for _, root in safeties),
+        asked=(settings.parts.rating.flank_safety, settings.parts.rating.root_safety),
     )
-    return GearLife(jumps=jumps, jumps_at_1=at_1, duty_jumps=settings.parts.duty.jumps)

@@ -126,6 +126,7 @@ def test_every_position_refers_to_a_datum_that_the_views_show(sheets):
         ]
         table = next((label for label in paper.labels if label.text == "Fits (ISO 286-2)"), None)
         assert framed, part.name
+        assert len(framed) == said.count("A"), part.name
         assert any(table is None or label.x < table.x - 5.0 for label in framed), part.name
         shown += bool(tolerances)
     assert shown >= 3
