@@ -145,13 +145,10 @@ def test_a_design_is_told_how_long_its_gears_last(case, calibration):
     assert "\n" not in life.advice
     short = (life.flank_safety / life.asked[0], life.root_safety / life.asked[1])
     assert (min(short) < 1.0) == bool(life.advice)
-    # The hip strikes nothing; the slow rating takes strikes above the duty only.
-    knee = structure(actuator_map, result.design.knee_ratio)
-    torque = float(loads["peak_gear_torque_knee_n_m"][0])
-    if torque > 1.25 * knee.actuator.peak_torque_n_m:
+    if case == "nominal":  # whose knee strikes harder than the duty's highest level, as the slow rating needs it
+        knee = structure(actuator_map, result.design.knee_ratio)
+        torque = float(loads["peak_gear_torque_knee_n_m"][0])
         assert min(short) == pytest.approx(struck_safety(knee, torque, life.duty_jumps), rel=2e-4)
-    else:
-        assert case == "C"
     assert all(f"{value:.2f} against" in life.advice for value in (life.flank_safety, life.root_safety) if life.advice)
     assert ("gear_strike_safety" in life.advice) == (case == "nominal")
 
