@@ -294,11 +294,17 @@ def plan_tables(plan: Plan, part: Part) -> tuple[list[Paper], list[Tag]]:
 
 
 def _around(plan: Plan) -> Iterator[float]:
-    """Yield radii of the single round faces around an axis: bosses, and bores that belong to no pattern."""
+    """Yield radii of the single round faces around an axis: bosses, and bores of which there are no others.
+
+    Several alike beside each other have no common axis.
+    """
     for layer in plan.layers:
         if layer.outline.circle is not None:
             yield float(layer.outline.circle.radius_mm)
-    yield from (bore.radius for bore in plan.bores if bore.count == 1)
+    for bore in plan.bores:
+        alike = [other for other in plan.bores if other.radius == bore.radius]
+        if bore.count == 1 and all(other.centres == bore.centres for other in alike):
+            yield bore.radius
 
 
 def plan_notes(plan: Plan, part: Part) -> Iterator[str]:
