@@ -3,8 +3,8 @@
 Order and symbols of the first seven are those of the paper (section III-B): Y = [l1, l2, g_k, g_h, K, C, T]. The
 others are optional: each has a default that leaves the paper's controller as it is, and a study may free them.
 
-``VARIABLES`` is a tuple of ``Variable`` records, in the order of the columns of every array of designs. ``PAPER_CASES``
-has a ``PaperCase`` for each row of Table I, by its name.
+``VARIABLES`` has the ``Variable`` records in the order of the columns of every array of designs, and by name.
+``PAPER_CASES`` has a ``PaperCase`` for each row of Table I, by its name.
 
 Example:
     >>> from pareto_monoped import PAPER_CASES, VARIABLES
@@ -16,17 +16,18 @@ Example:
     (['nominal', 'A', 'B', 'C'], 0.49, 0.8)
 """
 
+import difflib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import wraps
 from numbers import Real
-from typing import Literal, TypeVar, get_args
+from typing import Any, Literal, Protocol, SupportsIndex, TypeVar, get_args, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pareto_monoped.errors import DesignError, complaint, unknown_name
+from pareto_monoped.errors import DesignError, InputError, complaint, unknown_name
 
 _T = TypeVar("_T")
 Floats = NDArray[np.float64]
@@ -50,6 +51,34 @@ class Variable:
     decimals: int = field(repr=False)  #: decimals in reports, in the shown unit
     scale: float = field(repr=False)  #: factor from ``unit`` to the shown one
     factor: str = field(repr=False)  #: what a sensitivity calls it among what moves a design
+
+
+_R = TypeVar("_R", bound="_Named")
+
+
+class _Named(Protocol):
+    @property
+    def name(self) -> str: ...
+
+
+class Records(tuple[_R, ...]):
+    """Records in their order, which are also found by their names: ``VARIABLES["knee_ratio"]``."""
+
+    __slots__ = ()
+
+    @overload
+    def __getitem__(self, key: SupportsIndex | str, /) -> _R: ...
+    @overload
+    def __getitem__(self, key: slice, /) -> tuple[_R, ...]: ...
+    def __getitem__(self, key: SupportsIndex | str | slice, /) -> _R | tuple[_R, ...]:
+        """Return the record of a name or at a place; raise ``InputError`` for a name that none has."""
+        if not isinstance(key, str):
+            return super().__getitem__(key)
+        found = next((one for one in self if one.name == key), None)
+        if found is None:
+            near = difflib.get_close_matches(key, [one.name for one in self], n=1)
+            raise InputError(f"name = {key!r}: is unknown; {f'did you mean {near[0]!r}?' if near else 'correct it'}")
+        return found
 
 
 BASE_START_HEIGHT_M = 0.5  #: Height of the base above the floor at rest (paper, section IV-B).
@@ -90,7 +119,7 @@ def _variable(
 _MM, _TO_ONE = ("mm", 1000.0), (": 1", 1.0)
 
 # fmt: off
-VARIABLES: tuple[Variable, ...] = (
+VARIABLES: Records[Variable] = Records((
     _variable("thigh_length_m", "l1", "m", (0.3, 0.5), "thigh, hip axis to knee axis", "thigh length", 1, shown=_MM,
         factor="length of the thigh"),
     _variable("shank_length_m", "l2", "m", (0.3, 0.5), "shank, knee axis to foot centre", "shank length", 1, shown=_MM,
@@ -110,15 +139,38 @@ VARIABLES: tuple[Variable, ...] = (
         default=REST_LENGTH_M),
     _variable("start_height_m", "z0", "m", (0.35, 0.7), "height of the base above the floor at rest", "start height", 0,
         shown=_MM, default=BASE_START_HEIGHT_M),
-)
+))
 # fmt: on
 """The records of all design variables, the paper's seven first; each has name, unit, bounds, meaning and default."""
+MOST_KNOTS = 12  #: Of a torque profile, per joint.
+
+
+def _knot(joint: str, number: int) -> Variable:
+    symbol, meaning = f"{joint[0]}{number}", f"knot {number} of the {joint}'s torque, as a share of its motor's peak"
+    return _variable(
+        f"{joint}_knot_{number}", symbol, "1", (-1.0, 1.0), meaning, f"{joint} knot {number}", 3, default=0.0
+    )
+
+
+KNOTS: tuple[Variable, ...] = (
+    _variable("push_time_s", "t_p", "s", (0.1, 0.6), "time from the first knot to the last", "push time", 0,
+        shown=("ms", 1000.0), default=0.3),
+    *(_knot(joint, number) for joint in ("hip", "knee") for number in range(1, MOST_KNOTS + 1)),
+)  # fmt: skip
+"""The records of the variables of torque profiles (``jump.laws``), of which a study has those that its controller
+names; for all others they are out of use, at their defaults."""
+ALL_NAMES: tuple[str, ...] = tuple(variable.name for variable in (*VARIABLES, *KNOTS))
+"""In the order of the columns of arrays of designs with torque profiles."""
 NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES)
-"""In the order of the columns of arrays of designs."""
+"""In the order of the columns of arrays of designs without."""
+KNOT_NAMES: tuple[str, ...] = tuple(variable.name for variable in KNOTS)
+"""Of torque profiles: the push time, the knots of the hip, then those of the knee."""
 PAPER_NAMES: tuple[str, ...] = tuple(variable.name for variable in VARIABLES if variable.default is None)
 """The names of the paper's seven, which come first."""
 DEFAULTS: dict[str, float] = {v.name: v.default for v in VARIABLES if v.default is not None}
 """Optional variable -> its default."""
+ALL_DEFAULTS = DEFAULTS | {v.name: v.default for v in KNOTS if v.default is not None}
+"""The same with the variables of torque profiles."""
 LENGTHS = ("thigh_length_m", "shank_length_m")
 RATIOS = ("knee_ratio", "hip_ratio")
 PAPER_CONTROL = ("stiffness_n_per_m", "damping_n_s_per_m", "torsional_stiffness_n_m_per_rad")
@@ -130,19 +182,22 @@ UPPER: Floats = np.array([variable.upper for variable in VARIABLES if variable.d
 LOWER.flags.writeable = False
 UPPER.flags.writeable = False
 
+MOST = 1e9  #: Beyond this value of any variable, numbers overflow.
 _SHORTEST_M = 0.05  #: Of a link or start; a shorter link has no room for the actuators' output couplings.
 LEAST: Floats = np.array(
-    [_SHORTEST_M if name in (*LENGTHS, "start_height_m") else 1.0 if name in RATIOS else 0.0 for name in NAMES]
+    [
+        *(_SHORTEST_M if n in (*LENGTHS, "start_height_m") else 1.0 if n in RATIOS else 0.0 for n in NAMES),
+        *(-MOST for _ in KNOT_NAMES),  # motors have limits of their own, and an own law means what it likes
+    ]
 )  #: The least value of each variable that a design can mean; a ratio of 1 is no gearbox. Shape (number of variables,).
 LEAST.flags.writeable = False
-MOST = 1e9  #: Beyond this value of any variable, numbers overflow.
 
 
 def in_use(values: Mapping[str, ArrayLike]) -> tuple[Variable, ...]:
     """Return the paper's seven variables and the optional ones that differ from their defaults anywhere in a table."""
     return tuple(
         variable
-        for variable in VARIABLES
+        for variable in (*VARIABLES, *KNOTS)
         if variable.default is None
         or (variable.name in values and bool(np.any(np.asarray(values[variable.name]) != variable.default)))
     )
@@ -151,14 +206,15 @@ def in_use(values: Mapping[str, ArrayLike]) -> tuple[Variable, ...]:
 def complete(designs: ArrayLike) -> Floats:
     """Return designs with a column for each variable, of which optional ones may have been left out at their defaults.
 
-    ``designs`` has shape (..., 7), the paper's variables, or (..., number of variables), in the order of ``NAMES``.
+    ``designs`` has shape (..., 7), the paper's variables, or a column for each of ``NAMES`` or ``ALL_NAMES``, in this
+    order; these stay as they are.
 
     Raises:
         DesignError: another number of values.
     """
     values = np.asarray(designs, dtype=np.float64)
     given = values.shape[-1] if values.ndim else 0
-    if given == len(NAMES):
+    if given in (len(NAMES), len(ALL_NAMES)):
         return values
     if given != len(PAPER_NAMES):
         allowed = f"(..., {len(PAPER_NAMES)}) or (..., {len(NAMES)})"
@@ -169,23 +225,47 @@ def complete(designs: ArrayLike) -> Floats:
     return np.concatenate([values, optional], axis=-1)
 
 
+def designs_of(table: Any) -> Floats:
+    """Return designs, shape (n, number of variables), from a table with a column per variable.
+
+    Optional variables that the table leaves out have their defaults; those of torque profiles are there if it has one.
+    """
+    count = len(table[PAPER_NAMES[0]])
+    names = ALL_NAMES if any(name in table for name in KNOT_NAMES) else NAMES
+    given = [table[name] if name in table else np.full(count, ALL_DEFAULTS[name]) for name in names]
+    return np.column_stack([np.asarray(column, dtype=np.float64) for column in given])
+
+
+def table_of(designs: Floats) -> dict[str, Floats]:
+    """Return name -> values, shape (n,), of all of ``VARIABLES`` and of those of ``KNOTS`` that are in use."""
+    columns = dict(zip(ALL_NAMES, designs.T, strict=False))
+    used = {variable.name for variable in in_use(columns)}
+    return {name: values for name, values in columns.items() if name in NAMES or name in used}
+
+
 def complete_control(control: ArrayLike) -> Floats:
-    """Return values in the order of ``CONTROL``, shape (n, 6), from K, C and T, shape (n, 3), or from all of them."""
+    """Return values of ``CONTROL`` and ``KNOT_NAMES``, shape (n, 31), from the first 3, 6 or all of them."""
     values = np.atleast_2d(np.asarray(control, dtype=np.float64))
-    missing = [DEFAULTS[name] for name in CONTROL[values.shape[1] :]]
+    missing = [ALL_DEFAULTS[name] for name in (*CONTROL, *KNOT_NAMES)[values.shape[1] :]]
     return np.concatenate([values, np.broadcast_to(missing, (len(values), len(missing)))], axis=1)
 
 
 def columns(designs: ArrayLike, names: Sequence[str]) -> Floats:
     """Return a C-ordered copy of some variables' values, such as ``CONTROL``; for ``designs`` see ``complete``."""
-    return np.take(complete(designs), [NAMES.index(name) for name in names], axis=-1)
+    return np.take(complete(designs), [ALL_NAMES.index(name) for name in names], axis=-1)
+
+
+def control_of(designs: ArrayLike) -> Floats:
+    """Return what a jump needs besides the robot: columns of ``CONTROL`` and of a torque profile, if there is one."""
+    values = complete(designs)
+    return np.concatenate([columns(values, CONTROL), values[..., len(NAMES) :]], axis=-1)
 
 
 def nonsense(name: str, value: float) -> str | None:
     """Return what is wrong with a value that no design can mean; the paper's bounds play no part. None if it is one."""
     if not np.isfinite(value):
         return complaint(name, float(value), "a finite number", "give a number")
-    least = LEAST[NAMES.index(name)]
+    least = LEAST[ALL_NAMES.index(name)]
     if value < least:
         return f"{name} = {value:g}: must be at least {least:g}; give a larger value"
     return f"{name} = {value:g}: must be at most {MOST:g}; give a smaller value" if value > MOST else None
@@ -209,13 +289,17 @@ def _checked(kind: type[_T]) -> type[_T]:
     made = kind.__init__
 
     @wraps(made)
-    def checked(self: _T, **values: float) -> None:
+    def checked(self: _T, **values: Any) -> None:
+        profile = values.pop("profile", ())
+        values |= dict(zip(KNOT_NAMES, profile, strict=False))
         for name in values:
-            if name not in NAMES:
+            if name not in ALL_NAMES:
                 raise DesignError(unknown_name("design variable", name, NAMES))
         if missing := [name for name in PAPER_NAMES if name not in values]:
             raise DesignError(f"design: lacks {', '.join(missing)}; add them")
-        made(self, **{name: _number(name, value) for name, value in values.items()})
+        numbers = {name: _number(name, value) for name, value in values.items()}
+        knots = tuple(numbers.pop(name, ALL_DEFAULTS[name]) for name in KNOT_NAMES) if len(values) > len(NAMES) else ()
+        made(self, **numbers, profile=knots)  # type: ignore[call-arg]  # of the class itself
 
     kind.__init__ = checked  # type: ignore[assignment, method-assign]  # replaced on purpose
     return kind
@@ -225,6 +309,8 @@ def _checked(kind: type[_T]) -> type[_T]:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Design:
     """One design: a value for each variable, in the order of ``NAMES``; optional ones have defaults.
+
+    Those of a torque profile are given by their names, too, and kept together in ``profile``.
 
     The paper's bounds play no part, but values that nobody can mean are a ``DesignError``: links and starts of less
     than 0.05 m, gear ratios below 1, negative stiffness, damping or release, and what is no finite number.
@@ -246,15 +332,16 @@ class Design:
     knee_release_rad: float = 0.0
     rest_length_m: float = REST_LENGTH_M
     start_height_m: float = BASE_START_HEIGHT_M
+    profile: tuple[float, ...] = field(default=(), repr=False)  #: in the order of ``KNOT_NAMES``
 
     def as_array(self) -> Floats:
-        """Return the values in the order of ``NAMES``, shape (number of variables,)."""
-        return np.array([getattr(self, name) for name in NAMES], dtype=np.float64)
+        """Return the values in the order of ``NAMES``, shape (10,), or with a profile of ``ALL_NAMES``, shape (35,)."""
+        return np.array([*(getattr(self, name) for name in NAMES), *self.profile], dtype=np.float64)
 
     def as_dict(self) -> dict[str, float]:
         """Return the values by name: the paper's seven, and the optional ones that differ from their defaults."""
-        values = {name: getattr(self, name) for name in NAMES}
-        return {name: value for name, value in values.items() if value != DEFAULTS.get(name)}
+        values = dict(zip(ALL_NAMES, self.as_array().tolist(), strict=False))
+        return {name: value for name, value in values.items() if value != ALL_DEFAULTS.get(name)}
 
     @classmethod
     def from_array(cls, values: ArrayLike) -> "Design":
@@ -270,21 +357,28 @@ class Design:
         if array.ndim != 1:
             shape = f"({len(PAPER_NAMES)},) or ({len(NAMES)},)"
             raise DesignError(complaint("shape of a design", array.shape, shape, "give one design"))
-        return cls(**dict(zip(NAMES, complete(array).tolist(), strict=True)))
+        return cls(**dict(zip(ALL_NAMES, complete(array).tolist(), strict=False)))
 
-    def replace(self, changes: Mapping[str, float]) -> "Design":
-        """Return a copy with some variables changed.
+    def replace(self, changes: Mapping[str, float] | None = None, /, **more: float) -> "Design":
+        """Return a copy with some variables changed, which are named in a mapping, or one by one.
 
         Raises:
             DesignError: an unknown name, or a value that no design can mean.
+
+        Example:
+            >>> from pareto_monoped import PAPER_CASES
+            >>> PAPER_CASES["C"].design.replace(knee_ratio=6.0).knee_ratio
+            6.0
         """
+        changes = {} if changes is None else changes
         if not isinstance(changes, Mapping):
             allowed = "a mapping of variables to numbers, such as {'knee_ratio': 6.0}"
             raise DesignError(complaint("changes of a design", changes, allowed, "give one"))
+        changes = {**changes, **more}
         for name in changes:
-            if name not in NAMES:
+            if name not in ALL_NAMES:
                 raise DesignError(unknown_name("design variable", name, NAMES))
-        return Design.from_array([changes.get(name, getattr(self, name)) for name in NAMES])
+        return Design(**(dict(zip(ALL_NAMES, self.as_array().tolist(), strict=False)) | dict(changes)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 SQLITE = b"SQLite format 3\x00"  #: How a database begins (SQLite's file format, section 1.3).
 FORCE = "--force (in Python force=True)"  #: What allows an output to be replaced, on the command line and in Python.
-_BESIDE_A_DATABASE = ("-wal", "-shm", "-journal", "-lock")
+_BESIDE_A_DATABASE = ("-wal", "-shm", "-journal", "-lock", "-lock-guard")
 
 
 @contextmanager
@@ -89,7 +89,7 @@ def rename_new(source: Path, target: Path) -> None:
     """
     import ctypes
 
-    with suppress(AttributeError):
+    with suppress(AttributeError, TypeError):  # macOS has no such function, Windows no C library of this name
         names = os.fsencode(source.absolute()), os.fsencode(target.absolute())
         if ctypes.CDLL(None, use_errno=True).renameat2(-1, names[0], -1, names[1], ctypes.c_uint(1)) == 0:
             return

@@ -4,11 +4,11 @@ This is the only list of measures: each is one annotated field of ``JumpMeasures
 ``ScreenMeasures``. Results have these fields, the database has one column per measure, and the report takes what it
 lists, and how, from here.
 
-``MEASURES`` is a tuple of ``Measure`` records, one for each measure of a jump.
+``MEASURES`` has a ``Measure`` record for each measure of a jump, in their order and by name.
 
 Example:
     >>> from pareto_monoped import MEASURES
-    >>> energy = next(one for one in MEASURES if one.name == "energy_j")
+    >>> energy = MEASURES["energy_j"]
     >>> energy.unit, energy.direction, energy.text(15.36)
     ('J', 'minimise', '15.36 J')
 """
@@ -23,7 +23,7 @@ from typing import Annotated, Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import BASE_START_HEIGHT_M, Floats
+from pareto_monoped.design import BASE_START_HEIGHT_M, Floats, Records
 
 Direction = Literal["maximise", "minimise"]
 
@@ -232,7 +232,7 @@ class JumpMeasures:
     # fmt: on
 
 
-MEASURES: tuple[Measure, ...] = _described(JumpMeasures)
+MEASURES: Records[Measure] = Records(_described(JumpMeasures))
 """Every measure of a jump, in the order of the fields of ``jump.evaluate.Evaluations`` and of the database columns."""
 MEASURE_NAMES: tuple[str, ...] = tuple(measure.name for measure in MEASURES)
 ENERGIES: tuple[str, ...] = tuple(measure.name for measure in MEASURES if measure.work_share)

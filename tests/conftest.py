@@ -17,6 +17,7 @@ from hypothesis import settings
 
 # The machine is shared: how long one example takes says nothing about the code.
 settings.register_profile("shared_machine", deadline=None)
+settings.register_profile("every_time", deadline=None, max_examples=50)
 settings.load_profile("shared_machine")
 
 TOGETHER = {
@@ -53,6 +54,8 @@ def pytest_configure(config: pytest.Config) -> None:
 
     A study waits for the disk a hundred times.
     """
+    if config.getoption("markexpr") == "not long":
+        settings.load_profile("every_time")
     os.environ["MUJOCO_GL"] = "disable"  # as the command line does: nothing is drawn with MuJoCo
     os.environ["PYDANTIC_DISABLE_PLUGINS"] = "__all__"  # likewise; processes of the tests look for none, either
     gc.set_threshold(20_000)  # to look for unreachable objects more rarely saves 5 percent of all time

@@ -122,7 +122,7 @@ def test_unknown_and_missing_names_of_a_new_design_are_told():
         Design(**values)
     design = PAPER_CASES["C"].design
     assert copy.copy(design) == dataclasses.replace(design) == design
-    assert list(inspect.signature(Design).parameters) == list(NAMES)
+    assert list(inspect.signature(Design).parameters) == [*NAMES, "profile"]
 
 
 def test_wrong_number_of_values_is_refused():

@@ -89,6 +89,61 @@ def test_types_are_strict_and_every_exception_has_its_reason():
                     assert re.search(r"# type: ignore\[[a-z, -]+\]  # \w+", line), f"{path}: {line}"
 
 
+def test_the_version_and_the_changelog_agree():
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    released = re.findall(r"^## (\S+)(?: \((unreleased|\d{4}-\d{2}-\d{2})\))?$", text, re.M)
+    assert released[0][0] == pm.__version__
+    assert [day == "unreleased" for _, day in released[1:]] == [False] * (len(released) - 1)
+    for section in re.split(r"^## ", text, flags=re.M)[1:-1]:  # the first version changed nothing
+        assert re.findall(r"^### (\w+)$", section, re.M) == ["Added", "Changed", "Fixed"]
+
+
+def tracked():
+    """The files of the repository; the test is skipped where there is none, as in a source distribution."""
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=False)
+    if listed.returncode or not (ROOT / ".git").exists():
+        pytest.skip("no repository")
+    return listed.stdout.strip("\0").split("\0")
+
+
+def test_the_source_distribution_has_every_file_but_those_of_the_code_host(tmp_path):
+    """Tests and documents are made from it; SECURITY.md, which the site shows, was left out once."""
+    from setuptools._distutils.filelist import FileList
+
+    names = tracked()
+    for name in names:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    chosen = FileList()
+    chosen.findall(str(tmp_path))
+    chosen.allfiles = [str(Path(name).relative_to(tmp_path)) for name in chosen.allfiles]
+    for line in (ROOT / "MANIFEST.in").read_text(encoding="utf-8").splitlines():
+        if line and not line.startswith("#"):
+            chosen.process_template_line(line)
+    # setuptools itself adds these, and the package with its data.
+    given = {"README.md", "LICENSE", "MANIFEST.in", "pyproject.toml", "setup.py"}
+    left = [
+        name for name in names if name not in {*chosen.files, *given} and not name.startswith((".", "pareto_monoped/"))
+    ]
+    assert left == []
+
+
+def test_prose_has_at_most_120_characters_per_line():
+    """Tables, formulas, code, and lines that one picture or link fills are as long as they must be."""
+    long = []
+    for name in tracked():
+        if not name.endswith(".md") or name.startswith("tests/"):
+            continue
+        text = (ROOT / name).read_text(encoding="utf-8")
+        text = re.sub(
+            r"^( *)```.*?^\1```|^\$\$.*?^\$\$", lambda found: "\n" * found[0].count("\n"), text, flags=re.S | re.M
+        )
+        for number, line in enumerate(text.splitlines(), 1):
+            if len(line) > 120 and not line.lstrip().startswith(("|", "!", "<")) and " " in line.strip():
+                long.append(f"{name}:{number}")
+    assert long == []
+
+
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory):
     """The wheel, built from the checkout's files alone."""

@@ -1,6 +1,6 @@
 """What is computed from stored studies: alternatives, robustness, sensitivity, limits, verification.
 
-Order of imports, lowest first: alternatives, at_bounds, compare, rail_legs, robustness, verify; remarks,
+Order of imports, lowest first: alternatives, at_bounds, compare, limit, rail_legs, robustness, verify; remarks,
 sensitivity; choices.
 """
 
@@ -9,6 +9,7 @@ __all__ = [
     "at_bounds",
     "choices",
     "compare",
+    "limit",
     "rail_legs",
     "remarks",
     "robustness",

@@ -8,7 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from pareto_monoped.definition.variables import Bounds
-from pareto_monoped.design import LENGTHS, RATIOS, VARIABLES
+from pareto_monoped.design import KNOTS, LENGTHS, RATIOS, VARIABLES
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.pareto.objectives import Floats, Objectives
 from pareto_monoped.pareto.selectors import Condition, fitting
@@ -18,7 +18,7 @@ from pareto_monoped.storage.reader import StudyData
 LEAST_DISTANCE = 0.02
 """Distance below which two designs count as the same. Our own choice: 2 percent of one variable's range, which is 4 mm
 of a link, is less than anybody would call another robot."""
-_VARIABLES = {variable.name: variable for variable in VARIABLES}
+_VARIABLES = {variable.name: variable for variable in (*VARIABLES, *KNOTS)}
 _WORTH_TELLING = 0.05
 """Least difference of a number that is told, as a share of its range. Our own choice: 1 cm of a link."""
 _MOST_TOLD = 3

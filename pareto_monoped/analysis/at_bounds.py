@@ -7,7 +7,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from pareto_monoped.definition.variables import Bounds
-from pareto_monoped.design import VARIABLES
+from pareto_monoped.design import KNOTS, VARIABLES
 from pareto_monoped.measures import Measure, measure
 from pareto_monoped.storage.front_reader import StudyFront
 from pareto_monoped.storage.reader import Checkpoint, StudyData
@@ -49,7 +49,7 @@ class AtBound:
         if self.given is not None:
             whose = f" with {self.motor}" if self.motor else ""
             return f"the {'first' if self.side == 'lower' else 'last'} gearbox, {self.bound:.4g}{whose}"
-        unit = next(one for one in VARIABLES if one.name == self.name).unit
+        unit = next(one for one in (*VARIABLES, *KNOTS) if one.name == self.name).unit
         return f"its {self.side} bound of {self.bound:.4g} {unit}".removesuffix(" 1")
 
     @property

@@ -21,7 +21,7 @@ from scipy.optimize import OptimizeResult, least_squares
 
 from pareto_monoped.actuator.ratiomap import Maps
 from pareto_monoped.config import MAX_JSON_CHARACTERS
-from pareto_monoped.design import CONTROL, Design, Floats, columns
+from pareto_monoped.design import Design, Floats, control_of
 from pareto_monoped.errors import InputError, SimulationError, complaint
 from pareto_monoped.files import open_file
 from pareto_monoped.jump.calibration import Calibration
@@ -156,7 +156,7 @@ class _Machine:
         fine = replace(known, timestep_s=known.period_s / math.ceil(known.period_s / _STEP_S - 1e-9))
         self.calibration = calibration = replace(calibration, simulation=replace(fine, control_period_s=known.period_s))
         self.robots = robot_arrays(values, maps, calibration.mass)
-        self.control = columns(values, CONTROL)
+        self.control = control_of(values)
         self.pose = start_pose(self.robots, calibration)
         alone = evaluate_robots(self.robots, self.control, calibration)
         if not alone.ok[0]:

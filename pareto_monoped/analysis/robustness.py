@@ -5,13 +5,14 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
 from pareto_monoped.compute.chunks import AT_ONCE, cores, in_turn
-from pareto_monoped.design import NAMES
+from pareto_monoped.definition.study import Study
+from pareto_monoped.design import designs_of
 from pareto_monoped.errors import InputError, SelectionError, StudyError, complaint
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.measures import MEASURES, STATISTICS
@@ -23,7 +24,7 @@ from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.simulator import stored_simulator
 from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES, Samples, sobol_samples, variations
-from pareto_monoped.uncertainty.settings import DEFAULT_SEED, MOST_FAILED, Uncertainty
+from pareto_monoped.uncertainty.settings import DEFAULT_SEED, MOST_FAILED, Sampling, Uncertainty, load_uncertainty
 from pareto_monoped.uncertainty.statistics import Robustness, robustness
 
 LEAST_SAMPLES = 256
@@ -89,7 +90,7 @@ def robust(
 
 def simulated(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator, samples: Samples) -> dict[int, Robustness]:
     """Return the robustness of some trials by number."""
-    designs = rows[list(NAMES)].to_numpy(dtype=np.float64)
+    designs = designs_of(rows)
     motors = data.kit_numbers(rows)
     refuse_other_jumps(data, rows, evaluator)
     count = len(samples)
@@ -106,7 +107,7 @@ def simulated(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator, samples
 
 def refuse_other_jumps(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator) -> None:
     """Refuse trials that do not jump as they are stored; name the first one."""
-    height_m = evaluator(rows[list(NAMES)].to_numpy(dtype=np.float64), data.kit_numbers(rows)).height_m
+    height_m = evaluator(designs_of(rows), data.kit_numbers(rows)).height_m
     stored = rows["height_m"].to_numpy(dtype=np.float64)
     other = np.flatnonzero(height_m != stored)
     if len(other):
@@ -194,3 +195,26 @@ def robust_front(data: StudyData, trials: RobustTrials) -> pd.DataFrame:
         )
     mask = front_within(rows, (), objectives, able)
     return rows[mask].sort_values(objectives.names[0], kind="stable", ignore_index=True)
+
+
+def as_built(
+    data: StudyData, stored: Mapping[int, Stored], *, notify: Callable[[str], object]
+) -> tuple[StudyData, RobustTrials]:
+    """Return a study whose trials are those of known robustness, with what they keep; refuse one without a front."""
+    trials = robust_trials(data, stored)
+    if trials.others:
+        notify(f"left out: {trials.others} trials with other ranges, samples or seed")
+    robust_front(data, trials)
+    return replace(data, trials=trials.rows), trials
+
+
+def sampling(
+    study: Study, ranges: Uncertainty | None, samples: int | None, seed: int | None
+) -> tuple[Uncertainty, int, int]:
+    """Return ranges, number of samples and seed that are asked for; those left out are the study's, or the shipped."""
+    own = study.uncertainty or Sampling(ranges=load_uncertainty())
+    return (
+        own.ranges if ranges is None else ranges,
+        max(own.samples, DEFAULT_SAMPLES) if samples is None else samples,
+        own.seed if seed is None else seed,
+    )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pareto_monoped.analysis.robustness import refuse_other_jumps
 from pareto_monoped.compute.chunks import cores
 from pareto_monoped.definition.variables import Bounds
-from pareto_monoped.design import NAMES, RATIOS, VARIABLES, Variable
+from pareto_monoped.design import ALL_NAMES, KNOTS, RATIOS, VARIABLES, Variable, designs_of
 from pareto_monoped.errors import InputError, SelectionError, complaint
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
 from pareto_monoped.measures import ENERGIES, measure, nominal
@@ -163,7 +163,7 @@ def _of_assumptions(
     def simulate(points: Floats) -> tuple[NDArray[np.bool_], Floats]:
         whole = np.full((len(points), len(every)), 0.5)
         whole[:, moving] = points
-        design = np.repeat(row[list(NAMES)].to_numpy(dtype=np.float64), len(points), axis=0)
+        design = np.repeat(designs_of(row), len(points), axis=0)
         built = variations(samples_at(ranges, whole), 1, data.calibration)
         return _measured(evaluator(design, np.repeat(data.kit_numbers(row), len(points)), variations=built), names)
 
@@ -177,14 +177,14 @@ def _of_variables(
     places = [_places(data, row, name, within) for name in data.study.free]
 
     def simulate(points: Floats) -> tuple[NDArray[np.bool_], Floats]:
-        designs = np.repeat(row[list(NAMES)].to_numpy(dtype=np.float64), len(points), axis=0)
+        designs = np.repeat(designs_of(row), len(points), axis=0)
         for column, (factor, listed) in enumerate(places):
             values = points[:, column]
             if listed is None:
                 moved = between(factor, values)
             else:
                 moved = listed[np.minimum((values * len(listed)).astype(np.intp), len(listed) - 1)]
-            designs[:, NAMES.index(factor.name)] = moved
+            designs[:, ALL_NAMES.index(factor.name)] = moved
         return _measured(evaluator(designs, np.repeat(data.kit_numbers(row), len(points))), names)
 
     return tuple(factor for factor, _ in places), simulate
@@ -194,7 +194,7 @@ def _places(data: StudyData, row: pd.DataFrame, name: str, within: float) -> tup
     """Return a free variable as a factor; for a gearbox also the ratios that it goes through."""
     value, bounds = float(row[name].iloc[0]), data.study.variables[name]
     assert isinstance(bounds, Bounds)
-    variable = VARIABLES[NAMES.index(name)]
+    variable = (*VARIABLES, *KNOTS)[ALL_NAMES.index(name)]
     if name in RATIOS and data.study.gear_list:
         kit = data.kit_of_trial(int(row["trial"].iloc[0]))
         ratios = np.array([gear.ratio for gear in gear_list(kit.of(name.removesuffix("_ratio")), bounds)])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from pareto_monoped.design import NAMES
+from pareto_monoped.design import designs_of
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.measures import ENERGIES, MEASURE_NAMES
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
@@ -49,7 +49,9 @@ def _trial_findings(data: StudyData) -> Iterator[str]:
         yield from _first(trials, feasible & (values < 0.0), f"is feasible, but its {name} is negative")
     high = trials["height_m"].to_numpy() > HIGHEST_JUMP_M
     yield from _first(trials, high, f"has a height_m above {HIGHEST_JUMP_M:g}")
-    for name, lower, upper in zip(NAMES, data.study.lower, data.study.upper, strict=True):
+    for name, lower, upper in zip(data.study.names, data.study.lower, data.study.upper, strict=True):
+        if name not in trials:  # out of use
+            continue
         values, slack = trials[name].to_numpy(dtype=np.float64), _BOUNDS_SLACK * max(abs(lower), abs(upper))
         inside = (values >= lower - slack) & (values <= upper + slack)
         yield from _first(trials, ~inside, f"has a {name} beyond {lower:g} to {upper:g}")
@@ -171,7 +173,7 @@ def _jump_findings(
     simulator = stored_simulator(data, workers=workers, executor=executor)
     refuse_other_code(data, simulator)
     rows = data.trials.iloc[numbers]
-    designs = rows[list(NAMES)].to_numpy(dtype=np.float64)
+    designs = designs_of(rows)
     jumps = evaluation_of(data.study, simulator.evaluator)(designs, data.kit_numbers(rows))
     for name in (*MEASURE_NAMES, *data.study.robust_names):
         again, stored = jumps.of(name), rows[name].to_numpy(dtype=np.float64)

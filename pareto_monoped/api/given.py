@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import cache
+from html import escape
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any
 
@@ -18,8 +19,8 @@ from numpy.typing import NDArray
 from pareto_monoped.actuator.ratiomap import JointMaps, motor_label
 from pareto_monoped.definition.given import as_list, as_table, is_series
 from pareto_monoped.definition.variables import MOTOR_KEYS
-from pareto_monoped.design import DEFAULTS, NAMES, PAPER_NAMES, Design, complete
-from pareto_monoped.errors import CalibrationError, DesignError, InputError, StudyError, complaint
+from pareto_monoped.design import ALL_DEFAULTS, ALL_NAMES, KNOT_NAMES, NAMES, PAPER_NAMES, Design, complete
+from pareto_monoped.errors import CalibrationError, DesignError, InputError, SelectionError, StudyError, complaint
 from pareto_monoped.jump.calibration import (
     Calibration,
     calibration_names,
@@ -29,10 +30,12 @@ from pareto_monoped.jump.calibration import (
 )
 from pareto_monoped.jump.calibration import load_calibration as shipped_calibration
 from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION
-from pareto_monoped.measures import GOAL_NAMES, is_own
+from pareto_monoped.measures import GOAL_NAMES, is_own, near_measures
 
 if TYPE_CHECKING:
     from pandas import DataFrame
+
+    from pareto_monoped.pareto import selectors
 
 
 def executor_of(given: Any) -> Any:
@@ -100,7 +103,7 @@ def _known() -> tuple[str, ...]:
     """Return the names of columns that frames of designs may have: those of stored trials."""
     from pareto_monoped.storage.columns import COLUMNS
 
-    return tuple(dict.fromkeys((*NAMES, *(column.name for column in COLUMNS), *GOAL_NAMES)))
+    return tuple(dict.fromkeys((*ALL_NAMES, *(column.name for column in COLUMNS), *GOAL_NAMES)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -135,6 +138,16 @@ def given_designs(designs: Any) -> Given:
     if values.ndim > 2:
         raise DesignError(complaint("dimensions of designs", values.ndim, "1 or 2", "give one row per design"))
     return _unsaid(complete(np.atleast_2d(values)))
+
+
+def renamed(designs: Any, names: Mapping[str, str]) -> Any:
+    """Return designs with some of their columns called otherwise, in any form that ``simulate`` takes."""
+    if isinstance(designs, list | tuple):
+        return [renamed(one, names) for one in designs]
+    if not names or not _is_named(designs):
+        return designs
+    table = as_table(designs)
+    return {names.get(name, name): table[name] for name in table}
 
 
 def with_motors(designs: Any, maps: JointMaps) -> NDArray[np.float64]:
@@ -190,7 +203,8 @@ def _of_columns(table: "Mapping[str, Any] | DataFrame") -> Given:
             raise DesignError(f"designs: {name!r} is neither a variable nor a column of stored trials; {_near(name)}")
     if missing := [name for name in PAPER_NAMES if name not in table]:
         raise DesignError(f"designs: lack {', '.join(missing)}; add them")
-    given = [table[name] if name in table else DEFAULTS[name] for name in NAMES]
+    names = ALL_NAMES if any(name in table for name in KNOT_NAMES) else NAMES
+    given = [table[name] if name in table else ALL_DEFAULTS[name] for name in names]
     try:
         columns = np.broadcast_arrays(*(np.atleast_1d(np.asarray(v, dtype=np.float64)) for v in given))
         values = np.column_stack(columns)
@@ -263,3 +277,88 @@ def called_after(callback: object) -> Callable[..., Any] | None:
     if callback is None or callable(callback):
         return callback
     raise StudyError(complaint("callback", callback, "a function of the progress", "give one"))
+
+
+def ways_of(
+    by: str | None,
+    trial: int | None,
+    weights: Sequence[float] | None,
+    compromise: Sequence[float] | None,
+    nearest: Mapping[str, float] | None,
+    least: str | None,
+    most: str | None,
+) -> "list[selectors.Chooser]":
+    """Return the ways to choose that are asked for; more than one, or an unknown one, is a ``SelectionError``."""
+    from pareto_monoped.pareto import selectors
+
+    ways: list[selectors.Chooser] = []
+    if by is not None:
+        if not isinstance(by, str) or by not in ("knee", "tradeoff"):
+            raise SelectionError(complaint("by", by, "'knee' or 'tradeoff'", "correct it, or use another argument"))
+        ways.append(selectors.Knee() if by == "knee" else selectors.Tradeoff())
+    if trial is not None:
+        ways.append(selectors.Trial(number=trial_of(trial)))
+    if weights is not None:
+        ways.append(selectors.Weights(values=numbers_of("weights", weights)))
+    if compromise is not None:
+        ways.append(selectors.Compromise(values=numbers_of("compromise", compromise)))
+    if nearest is not None:
+        if not (wish := _named("nearest", nearest)):
+            raise SelectionError("nearest: names no measure; give one, such as {'height_m': 1.0}")
+        ways.append(selectors.Nearest(wish=wish))
+    for what, name in (("least", least), ("most", most)):
+        if name is not None:
+            ways.append(selectors.Extreme(name=_known_name(what, name), most=what == "most"))
+    if len(ways) > 1:
+        raise SelectionError(f"ways to choose = {len(ways)}: must be at most 1, with any conditions; drop the others")
+    return ways
+
+
+def conditions_of(
+    min_height_m: float | None,
+    max_energy_j: float | None,
+    at_least: Mapping[str, float] | None,
+    at_most: Mapping[str, float] | None,
+) -> "tuple[selectors.Condition | selectors.MaxEnergy, ...]":
+    """Return the conditions that are asked for; an unknown name is a ``SelectionError``."""
+    from pareto_monoped.pareto import selectors
+
+    found: list[selectors.Condition | selectors.MaxEnergy] = []
+    if min_height_m is not None:
+        least = number_of("min_height_m", min_height_m)
+        found.append(selectors.Condition(name="height_m", side="min", value=least, asked="min_height_m"))
+    if max_energy_j is not None:
+        found.append(selectors.MaxEnergy(energy_j=number_of("max_energy_j", max_energy_j)))
+    for name, value in _named("at_least", {} if at_least is None else at_least).items():
+        found.append(selectors.Condition(name=name, side="min", value=value))
+    for name, value in _named("at_most", {} if at_most is None else at_most).items():
+        found.append(selectors.Condition(name=name, side="max", value=value))
+    return tuple(found)
+
+
+def _named(what: str, values: Any) -> dict[str, float]:
+    """Return numbers of measures and variables; raise ``InputError``, or ``SelectionError`` for an unknown name."""
+    numbers = table_of(what, values)
+    for name in numbers:
+        _known_name(what, name)
+    return numbers
+
+
+def _known_name(what: str, name: Any) -> str:
+    from pareto_monoped.pareto.selectors import CONDITION_NAMES
+
+    if not isinstance(name, str):
+        raise SelectionError(complaint(what, name, "the name of a measure or a variable", "give one"))
+    if name not in CONDITION_NAMES and not is_own(name):
+        cure = near_measures(name, CONDITION_NAMES)
+        raise SelectionError(f"{what} = {name!r}: must be a measure or a variable; {cure}")
+    return name
+
+
+def html_of(title: str, facts: Mapping[str, object]) -> str:
+    """Return what notebooks show of an object: its title above a table of facts."""
+    rows = "".join(
+        f"<tr><th style='text-align:left'>{escape(name)}</th><td style='text-align:left'>{escape(str(value))}</td></tr>"
+        for name, value in facts.items()
+    )
+    return f"<b>{escape(title)}</b><table>{rows}</table>"

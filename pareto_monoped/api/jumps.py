@@ -13,14 +13,15 @@ from pareto_monoped.actuator.motors import load_motor as motor_of
 from pareto_monoped.actuator.motors import motor_source, motor_values, stored_motor
 from pareto_monoped.actuator.ratiomap import ActuatorMap, JointMaps
 from pareto_monoped.actuator.search import map_of
-from pareto_monoped.api.given import one_design, own_calibration, with_motors
+from pareto_monoped.api.given import one_design, own_calibration, renamed, with_motors
 from pareto_monoped.compute.chunks import cores
 from pareto_monoped.definition.given import count_of
-from pareto_monoped.design import CONTROL, DEFAULT_RULES, NAMES, PAPER_MOTOR, Design, RuleSet, columns
+from pareto_monoped.design import DEFAULT_RULES, PAPER_MOTOR, Design, RuleSet, control_of, table_of
 from pareto_monoped.errors import CalibrationError, DesignError, MotorError, complaint
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.calibration import load_calibration as calibration_of
 from pareto_monoped.jump.calibration_defaults import DEFAULT, rules_for
+from pareto_monoped.jump.laws import Law, law_of
 from pareto_monoped.leg.thigh_outline import require_leg
 from pareto_monoped.robot.build import Robot
 from pareto_monoped.robot.build import build_robot as robot_of
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 StrPath = str | PathLike[str]
 AnyMotor = Motor | StrPath
 AnyCalibration = Calibration | StrPath
+AnyController = Law | Mapping[str, Any] | str
 
 
 def load_motor(name_or_path: StrPath) -> Motor:
@@ -147,6 +149,7 @@ def simulate(
     hip_motor: AnyMotor | None = None,
     knee_motor: AnyMotor | None = None,
     calibration: AnyCalibration = DEFAULT,
+    controller: AnyController | None = None,
     rules: RuleSet | None = None,
     workers: int | None = None,
 ) -> "DataFrame":
@@ -161,6 +164,8 @@ def simulate(
         hip_motor: of the hip, instead of ``motor``.
         knee_motor: of the knee, likewise.
         calibration: the jump model: a calibration, the name of a shipped one, or a TOML file.
+        controller: what the motors are told, by its name or as the table ``[controller]`` of a study file, such as
+            ``{"kind": "torque_over_time", "knots": 8}``, or an ``OwnLaw``; by default that of the calibration.
         rules: of the gearboxes; by default those that go with the calibration.
         workers: number of threads, all cores if None. It does not change the results.
 
@@ -183,7 +188,19 @@ def simulate(
     """
     model, chosen = calibrated(calibration, rules)
     maps = joint_maps_of(motor, hip_motor, knee_motor, chosen)
-    return jumps_of(with_motors(designs, maps), [maps], model, workers)
+    designs, model, slots = _controlled(designs, model, controller)
+    return jumps_of(with_motors(designs, maps), [maps], model, workers).rename(columns=slots)
+
+
+def _controlled(
+    designs: Any, calibration: Calibration, controller: AnyController | None
+) -> tuple[Any, Calibration, dict[str, str]]:
+    """Return designs in the columns that the law reads, the calibration with it, and what own variables are called."""
+    if controller is None:
+        return designs, calibration, {}
+    law = law_of(controller, source="controller", error=DesignError)
+    slots = law.slots
+    return renamed(designs, slots), calibration.under(law), {slot: name for name, slot in slots.items()}
 
 
 def jumps_of(
@@ -203,7 +220,7 @@ def jumps_of(
 
     threads = count_of("workers", workers) or cores()
     result = Evaluator(kits[0], calibration, workers=threads, others=kits[1:])(values, motors)
-    return pd.DataFrame(dict(zip(NAMES, values.T, strict=True)) | result.as_columns())
+    return pd.DataFrame(table_of(values) | result.as_columns())
 
 
 def trace(
@@ -213,6 +230,7 @@ def trace(
     hip_motor: AnyMotor | None = None,
     knee_motor: AnyMotor | None = None,
     calibration: AnyCalibration = DEFAULT,
+    controller: AnyController | None = None,
     rules: RuleSet | None = None,
 ) -> "DataFrame":
     """Return one jump step by step: states, torques, forces and energies, in the units of their names.
@@ -223,6 +241,7 @@ def trace(
         hip_motor: see ``simulate``.
         knee_motor: see ``simulate``.
         calibration: see ``simulate``.
+        controller: see ``simulate``.
         rules: see ``simulate``.
 
     Returns:
@@ -247,6 +266,7 @@ def trace(
 
     model, chosen = calibrated(calibration, rules)
     maps = joint_maps_of(motor, hip_motor, knee_motor, chosen)
+    design, model, _ = _controlled(design, model, controller)
     values = with_motors(design, maps)
     if len(values) != 1:
         raise DesignError(complaint("number of designs", len(values), "1 for a trace", "trace them one by one"))
@@ -254,7 +274,34 @@ def trace(
     if one["status"][0] in ("bad_input", "no_gearbox", "cannot_stand"):
         raise DesignError(f"design: has no jump to trace ({one['reason'][0]}); change it")
     robots = robot_arrays(values, maps, model.mass)
-    return pd.DataFrame(trace_of(robots, columns(values, CONTROL), model))
+    return pd.DataFrame(trace_of(robots, control_of(values), model))
+
+
+def table1(*, workers: int | None = None) -> "DataFrame":
+    """Return the paper's Table I as published, and as simulated here under ``paper`` and ``reference``.
+
+    Args:
+        workers: number of threads, all cores if None. It does not change the results.
+
+    Returns:
+        One row per case, with ``case`` and heights and energies such as ``published.height_m``. Under ``paper``, they
+        are medians over 100 copies changed by up to 1e-6, with percentiles and ``paper.jumped_share``.
+
+    Raises:
+        InputError: no number of threads.
+
+    Example:
+        >>> from pareto_monoped import table1
+        >>> print(table1().set_index("case").loc["C", ["published.height_m", "reference.height_m"]].round(3).to_dict())
+        {'published.height_m': 0.8, 'reference.height_m': 1.058}
+    """
+    import pandas as pd
+
+    from pareto_monoped.jump.table1 import table1 as rows_of
+
+    maps = (actuator_map(rules=rules_for(name)) for name in ("paper", "reference"))
+    rows = rows_of(*maps, workers=count_of("workers", workers) or cores())
+    return pd.json_normalize([row.as_dict() for row in rows])
 
 
 def calibrated(calibration: AnyCalibration, rules: RuleSet | None) -> tuple[Calibration, RuleSet]:

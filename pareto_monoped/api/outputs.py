@@ -1,20 +1,61 @@
-"""What leaves the program: an export of one design, and the report of studies."""
+"""What leaves the program: an export of one design, the report of studies, and a film of a jump."""
 
+import warnings
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from pareto_monoped.api.given import one_design, truth_of
-from pareto_monoped.api.jumps import AnyCalibration, AnyMotor, StrPath, calibrated, joint_maps_of
+from pareto_monoped.api.given import html_of, number_of, one_design, truth_of
+from pareto_monoped.api.jumps import (
+    AnyCalibration,
+    AnyMotor,
+    StrPath,
+    build_robot,
+    calibrated,
+    joint_maps_of,
+    trace,
+)
 from pareto_monoped.api.studies import Picked, StoredStudy, as_path, as_place, load_study
 from pareto_monoped.definition.given import as_list
 from pareto_monoped.design import PAPER_MOTOR, Design, RuleSet
-from pareto_monoped.errors import require_extra
+from pareto_monoped.errors import InputError, complaint, require_extra
 from pareto_monoped.jump.calibration_defaults import DEFAULT, strength_for
 
 if TYPE_CHECKING:
     from pandas import DataFrame
+
+
+class Export(dict[str, Any]):
+    """What an export wrote: the content of its ``design.json`` by key, and its folder.
+
+    Example:
+        >>> import pareto_monoped as pm
+        >>> made = pm.Export("case_c", {"mass_kg": 4.77, "files": ["design.json"]})
+        >>> made, made["mass_kg"], [path.name for path in made.files]
+        (Export('case_c', 1 files, 4.77 kg), 4.77, ['design.json'])
+    """
+
+    def __init__(self, folder: StrPath, record: Mapping[str, Any]) -> None:
+        super().__init__(record)
+        self.folder = Path(folder)  #: where it is
+
+    @property
+    def files(self) -> list[Path]:
+        """Everything that was written, ``design.json`` last."""
+        return [self.folder / name for name in self["files"]]
+
+    def __repr__(self) -> str:
+        """Return one line: the folder, how much is in it, and the robot's mass."""
+        return f"Export({str(self.folder)!r}, {len(self['files'])} files, {self['mass_kg']:.2f} kg)"
+
+    def _repr_html_(self) -> str:
+        """Return folder, mass and jumps, for notebooks."""
+        facts: dict[str, object] = {"mass": f"{self['mass_kg']:.2f} kg", "files": len(self["files"])}
+        for name, jump in self.get("jumps", {}).items():
+            facts[name.replace("_", " ")] = f"{jump['height_m']:.4f} m, {jump['energy_j']:.3f} J"
+        return html_of(f"export {self.folder}", facts)
 
 
 def export(
@@ -29,7 +70,7 @@ def export(
     formats: Sequence[str] | None = None,
     force: bool = False,
     strength: bool | None = None,
-) -> dict[str, Any]:
+) -> Export:
     """Write CAD, drawings, models, pictures and parts list of a design to a folder.
 
     The design is built with lengths rounded to 0.1 mm and the real ratios of its gearboxes, then simulated again and
@@ -50,7 +91,7 @@ def export(
             calibration.
 
     Returns:
-        The content of its ``design.json``.
+        The folder, with the content of its ``design.json``.
 
     Raises:
         InputError: an unknown format, an unusable motor or calibration, or a folder that holds something else.
@@ -82,7 +123,7 @@ def export(
         source={"design": one.as_dict()},
         strength=strength_for(model.name) if strength is None else truth_of("strength", strength),
     )
-    return run(job)
+    return Export(job.folder, run(job))
 
 
 def export_trial(
@@ -93,7 +134,7 @@ def export_trial(
     formats: Sequence[str] | None = None,
     force: bool = False,
     strength: bool | None = None,
-) -> dict[str, Any]:
+) -> Export:
     """Write CAD, drawings, models, pictures and parts list of a trial, with the motors and calibration of its study.
 
     Args:
@@ -105,7 +146,7 @@ def export_trial(
         strength: see ``export``; by default as the study asked.
 
     Returns:
-        The content of its ``design.json``.
+        The folder, with the content of its ``design.json``.
 
     Raises:
         SelectionError: no such trial.
@@ -124,26 +165,34 @@ def export_trial(
     stored = study if isinstance(study, StoredStudy) else load_study(study)
     number = trial.trial if isinstance(trial, Picked) else trial
     stored.design(number)  # refuses a number that the study does not have
-    return run(
-        trial_job(
-            stored.data,
-            number,
-            folder=as_path(folder, "folder"),
-            formats=as_list(formats),
-            force=truth_of("force", force),
-            strength=None if strength is None else truth_of("strength", strength),
-        )
+    job = trial_job(
+        stored.data,
+        number,
+        folder=as_path(folder, "folder"),
+        formats=as_list(formats),
+        force=truth_of("force", force),
+        strength=None if strength is None else truth_of("strength", strength),
     )
+    return Export(job.folder, run(job))
 
 
 def write_report(
-    studies: StoredStudy | StrPath | Sequence[StoredStudy | StrPath], out: StrPath, *, force: bool = False
+    studies: StoredStudy | StrPath | Sequence[StoredStudy | StrPath],
+    out: StrPath,
+    *,
+    exports: StrPath | None = None,
+    figures: StrPath | None = None,
+    jumps: bool = True,
+    force: bool = False,
 ) -> None:
     """Write the report of one study or several: one HTML page that works without a network.
 
     Args:
         studies: one study or database, or several that are compared.
         out: the HTML file.
+        exports: folder of exported designs, ``exports/trial_N``, which the page shows.
+        figures: folder for figures for print, as SVG and PNG.
+        jumps: whether the page has the jumps of the fronts' designs; without them it is quicker made, and smaller.
         force: replace a file that is not a report.
 
     Raises:
@@ -164,4 +213,75 @@ def write_report(
     target = as_path(out, "out")
     replace = truth_of("force", force)
     refuse_database(target)
-    write_text(target, page(payload_of(dbs)), force=replace)
+    shown = None if exports is None else as_path(exports, "exports")
+    payload = payload_of(dbs, exports=shown, most_jumps=None if truth_of("jumps", jumps) else 0, note=warnings.warn)
+    write_text(target, page(payload), force=replace)
+    if figures is not None:
+        from pareto_monoped.report.figures import write_figures
+
+        write_figures(payload, as_path(figures, "figures"), force=replace)
+
+
+def film(
+    design: "Design | Mapping[str, Any] | DataFrame | ArrayLike",
+    out: StrPath,
+    *,
+    motor: AnyMotor = PAPER_MOTOR,
+    hip_motor: AnyMotor | None = None,
+    knee_motor: AnyMotor | None = None,
+    calibration: AnyCalibration = DEFAULT,
+    rules: RuleSet | None = None,
+    slower: float = 6.0,
+    force: bool = False,
+) -> Path:
+    """Draw the jump of a design with heights and torques beside it, as an animated picture or a video.
+
+    Args:
+        design: its variables, in one of the forms that ``trace`` takes.
+        out: the file; its ending, .gif, .mp4 or .webm, says which. Videos need ffmpeg, or the extra ``video``.
+        motor: see ``simulate``.
+        hip_motor: see ``simulate``.
+        knee_motor: see ``simulate``.
+        calibration: see ``simulate``.
+        rules: see ``simulate``.
+        slower: how many times slower than the jump it is, 1 to 100.
+        force: replace a file of another kind.
+
+    Returns:
+        The file.
+
+    Raises:
+        DesignError: see ``trace``.
+        InputError: another ending, an unusable motor or calibration, or the extra ``cad`` is missing.
+        OutputError: the file cannot be written, or must not be replaced.
+
+    Example:
+        >>> import pareto_monoped as pm
+        >>> pm.film(pm.PAPER_CASES["C"].design, "case_c.gif")  # doctest: +SKIP
+    """
+    require_extra("cad", "CAD")
+    from pareto_monoped.cad.film import VIDEOS, require_video, write_gif, write_video
+    from pareto_monoped.cad.film import film as pictures_of
+
+    path, replace, pace = as_path(out, "out"), truth_of("force", force), number_of("slower", slower)
+    if not 1.0 <= pace <= 100.0:
+        raise InputError(complaint("slower", slower, "1 to 100", "correct it"))
+    is_gif = path.suffix.lower() == ".gif"
+    if not is_gif:
+        if path.suffix.lower() not in VIDEOS:
+            raise InputError(complaint("out", str(path), f"a file ending in .gif, {' or '.join(VIDEOS)}", "correct it"))
+        require_video(path)
+    steps = trace(
+        design,
+        motor=motor,
+        hip_motor=hip_motor,
+        knee_motor=knee_motor,
+        calibration=calibration,
+        rules=rules,
+    )
+    robot = build_robot(
+        design, motor=motor, hip_motor=hip_motor, knee_motor=knee_motor, rules=calibrated(calibration, rules)[1]
+    )
+    columns = {str(name): steps[name].to_numpy() for name in steps}
+    (write_gif if is_gif else write_video)(path, pictures_of(robot, columns, slower=pace), force=replace)
+    return path

@@ -9,7 +9,7 @@ import numpy as np
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.api.given import truth_of
 from pareto_monoped.api.studies import StoredStudy
-from pareto_monoped.design import Floats
+from pareto_monoped.design import NAMES, VARIABLES, Floats
 from pareto_monoped.errors import InputError, complaint, unknown_name
 from pareto_monoped.measures import MEASURE_NAMES, is_goal, measure
 
@@ -33,6 +33,8 @@ class _Series:
     line: bool = True
     points: bool = False
     pale: bool = False
+    hover: tuple[tuple[str, Any], ...] = ()  #: label and column of what plotly shows of the point under the mouse
+    shade: Floats | None = None  #: values that colour the points, instead of ``colour``
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,6 +44,7 @@ class _Panel:
     x: str
     y: str
     series: tuple[_Series, ...]
+    shade: str = ""  #: what ``shade`` of the series is
 
 
 def plot_front(
@@ -49,15 +52,20 @@ def plot_front(
     *,
     x: str | None = None,
     y: str | None = None,
+    color: str | None = None,
     trials: bool = True,
     backend: Backend = "plotly",
 ) -> Any:
     """Return the fronts of one study or several, with all feasible trials behind them.
 
+    Under the mouse, plotly names trial, motors, variables and objectives.
+
     Args:
         studies: one or several, drawn over each other.
         x: stored measure to the right; by default the second objective of the first study.
         y: stored measure upward; by default its first objective. The front is that of each study's own objectives.
+        color: stored measure or variable that colours the fronts; by default the third objective of the first study,
+            if it has one, else each study has a colour.
         trials: whether to draw feasible trials behind the front.
         backend: ``plotly`` or ``matplotlib``.
 
@@ -84,6 +92,10 @@ def plot_front(
     for name in (across, up):
         if not is_goal(name) or not all(name in one.trials for one in several):
             raise InputError(unknown_name("axis", name, MEASURE_NAMES))
+    shade = color if color is not None else names[2] if len(names) > 2 else None
+    known = shade is None or is_goal(shade) or (isinstance(shade, str) and shade in NAMES)
+    if not known or (shade is not None and not all(shade in one.trials for one in several)):
+        raise InputError(unknown_name("color", shade, (*MEASURE_NAMES, *NAMES)))
     with_trials = truth_of("trials", trials)
     series: list[_Series] = []
     for k, one in enumerate(several):
@@ -91,8 +103,9 @@ def plot_front(
         if with_trials:
             feasible = one.trials[one.trials["state"] == "feasible"]
             series.append(_points(f"{one.study.name}, trials", feasible, across, up, colour, pale=True))
-        series.append(_points(f"{one.study.name}, front", one.front(), across, up, colour, pale=False))
-    return _drawn([_Panel(x=_title(across), y=_title(up), series=tuple(series))], backend)
+        series.append(_points(f"{one.study.name}, front", one.front(), across, up, colour, shade))
+    title = "" if shade is None else _title(shade)
+    return _drawn([_Panel(x=_title(across), y=_title(up), series=tuple(series), shade=title)], backend)
 
 
 def plot_actuators(*maps: ActuatorMap, backend: Backend = "plotly") -> Any:
@@ -172,14 +185,34 @@ def plot_jump(trace: "DataFrame", *, backend: Backend = "plotly") -> Any:
     return _drawn(panels, backend)
 
 
-def _points(name: str, rows: "DataFrame", x: str, y: str, colour: str, *, pale: bool) -> _Series:
-    across, up = (rows[one].to_numpy(dtype=np.float64) * measure(one).scale for one in (x, y))
-    return _Series(name=name, x=across, y=up, colour=colour, line=False, points=True, pale=pale)
+def _points(
+    name: str, rows: "DataFrame", x: str, y: str, colour: str, shade: str | None = None, *, pale: bool = False
+) -> _Series:
+    across, up = (_shown(rows, one) for one in (x, y))
+    named = [one for one in ("motor", "hip_motor", "knee_motor") if one in rows]
+    objectives = [one for one in rows if is_goal(one) and one in (x, y, shade, "mass_kg")]
+    hover = [("trial", rows["trial"].to_numpy()), *((one.replace("_", " "), rows[one].to_numpy()) for one in named)]
+    hover += [(_title(one), np.char.mod("%.5g", _shown(rows, one))) for one in (*objectives, *NAMES) if one in rows]
+    shaded = None if shade is None else _shown(rows, shade)
+    return _Series(
+        name=name, x=across, y=up, colour=colour, line=False, points=True, pale=pale, hover=tuple(hover), shade=shaded
+    )
+
+
+def _entry(name: str) -> Any:
+    return VARIABLES[name] if name in NAMES else measure(name)
+
+
+def _shown(rows: "DataFrame", name: str) -> Floats:
+    """Return a column in the unit that is shown."""
+    values: Floats = rows[name].to_numpy(dtype=np.float64) * _entry(name).scale
+    return values
 
 
 def _title(name: str) -> str:
-    entry = measure(name)
-    return entry.words if entry.shown_unit == "1" else f"{entry.words} ({entry.shown_unit})"
+    entry = _entry(name)
+    words = entry.label if name in NAMES else entry.words
+    return words if entry.shown_unit in ("1", ": 1") else f"{words} ({entry.shown_unit})"
 
 
 def _drawn(panels: Sequence[_Panel], backend: Backend) -> Any:
@@ -203,7 +236,8 @@ def _by_plotly(panels: Sequence[_Panel]) -> Any:
                     name=one.name,
                     mode="+".join(["lines"] * one.line + ["markers"] * one.points),
                     line={"color": one.colour},
-                    marker={"color": one.colour, "size": 4 if one.pale else 6},
+                    marker={"color": one.colour, "size": 4 if one.pale else 6} | _shading(one, panel.shade),
+                    **_hovering(one),
                     opacity=_PALE if one.pale else 1.0,
                     legendgroup=one.name,
                     showlegend=row == 1,
@@ -215,6 +249,25 @@ def _by_plotly(panels: Sequence[_Panel]) -> Any:
     figure.update_xaxes(title=panels[-1].x, row=len(panels), col=1)
     figure.update_layout(template="plotly_white", height=420 if len(panels) == 1 else 220 * len(panels))
     return figure
+
+
+def _shading(one: _Series, title: str) -> dict[str, Any]:
+    """Return how plotly colours points by values; nothing where they have the colour of their study."""
+    if one.shade is None:
+        return {}
+    bar = {"title": {"text": title, "side": "right"}, "y": 0.0, "yanchor": "bottom", "len": 0.75}
+    return {"color": one.shade, "colorscale": "Viridis", "showscale": True, "colorbar": bar}
+
+
+def _hovering(one: _Series) -> dict[str, Any]:
+    """Return what plotly shows of a point under the mouse."""
+    if not one.hover:
+        return {}
+    lines = [f"{label}: %{{customdata[{k}]}}" for k, (label, _) in enumerate(one.hover)]
+    columns = np.empty((len(one.x), len(one.hover)), dtype=object)
+    for k, (_, column) in enumerate(one.hover):
+        columns[:, k] = column
+    return {"customdata": columns, "hovertemplate": "<br>".join(lines)}
 
 
 def _by_matplotlib(panels: Sequence[_Panel]) -> Any:
@@ -233,6 +286,9 @@ def _by_matplotlib(panels: Sequence[_Panel]) -> Any:
                 color=one.colour,
                 label=one.name,
             )
+            if one.shade is not None:
+                dots = axes.scatter(one.x, one.y, c=one.shade, s=14, zorder=3)
+                figure.colorbar(dots, ax=axes, label=panel.shade)
         axes.set(ylabel=panel.y)
         axes.grid(color="#dddddd", lw=0.4)
         axes.legend(frameon=False)

@@ -1,11 +1,11 @@
-"""Run and resume studies from scripts, and let stored designs jump as robots are built."""
+"""Run, resume and compare studies from scripts, with a bar that shows how far they are."""
 
+import sys
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
-
-from numpy.typing import ArrayLike
 
 from pareto_monoped.api.given import (
     called_after,
@@ -13,13 +13,13 @@ from pareto_monoped.api.given import (
     own_calibration,
     seed_of,
     stored_calibration_name,
-    trial_of,
+    truth_of,
 )
 from pareto_monoped.api.jumps import AnyCalibration, StrPath
-from pareto_monoped.api.studies import Picked, StoredStudy, as_path, as_place, load_study
+from pareto_monoped.api.studies import StoredStudy, as_path, as_place, load_study
 from pareto_monoped.definition.given import as_list, as_plain, as_table, count_of
 from pareto_monoped.definition.study import Study, budgeted, study_from_dict
-from pareto_monoped.errors import InputError, StudyError, complaint
+from pareto_monoped.errors import InputError, StudyError, complaint, require_extra
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.calibration_defaults import rules_for
 from pareto_monoped.search.own_algorithm import own_algorithm_name
@@ -28,6 +28,7 @@ from pareto_monoped.study.own_functions import Own, OwnFunction, functions_of, l
 
 if TYPE_CHECKING:
     from pandas import DataFrame
+    from rich.console import Console
 
     from pareto_monoped.study.run import RunSummary
     from pareto_monoped.study.session import Progress
@@ -101,6 +102,7 @@ def run(
     workers: int | None = None,
     executor: Executor | None = None,
     callback: "Callable[[Progress], Any] | None" = None,
+    progress: bool | None = None,
 ) -> StoredStudy:
     """Run a study into a database, or continue it where it stopped; the command ``run`` makes the same trials.
 
@@ -130,6 +132,7 @@ def run(
             the trials either.
         callback: called after each generation is stored, with the progress. If it returns True, the run ends with the
             next generation, which is computed by then: it is stored and told of, too. The study can be resumed.
+        progress: whether to show a bar; by default in notebooks only.
 
     Warns:
         UserWarning: no design is feasible; it says which limits are missed, and by how much.
@@ -156,10 +159,35 @@ def run(
 
     one = study if isinstance(study, Study) else Study.from_toml(as_path(study, "study", allowed=_STUDY))
     target = _database(study, db)
-    changes, functions = _goals(one, objectives, constraints)
+    changed, own = _asked(one, algorithm, objectives, constraints, calibration, seed)
+    with _heard(callback, progress) as hear:
+        summary = run_study(
+            changed,
+            target,
+            evaluations=count_of("evaluations", evaluations),
+            workers=count_of("workers", workers),
+            executor=executor_of(executor),
+            progress=hear,
+            own=own,
+        )
+    _warn_of_no_front(summary)
+    return load_study(summary.db)
+
+
+def _asked(
+    study: Study,
+    algorithm: Any,
+    objectives: Sequence[Goal] | None,
+    constraints: Limits | None,
+    calibration: AnyCalibration | None,
+    seed: int | None,
+) -> tuple[Study, Own]:
+    """Return the study with what ``run`` was asked to change, and what of it is one's own."""
+    changes, functions = _goals(study, objectives, constraints)
+    own_model: Calibration | None = None
     if isinstance(calibration, Calibration):
-        calibration = own_calibration(calibration)
-        changes["calibration"] = stored_calibration_name(calibration)
+        own_model = own_calibration(calibration)
+        changes["calibration"] = stored_calibration_name(own_model)
     elif calibration is not None:
         changes["calibration"] = str(as_path(calibration, "calibration", allowed=_CALIBRATION))
     if "calibration" in changes and rules_for(changes["calibration"]) == "paper":
@@ -169,21 +197,7 @@ def run(
         changes["algorithm"] = {"name": own_algorithm_name(own)} if own is not None else _settings(algorithm)
     if seed is not None:
         changes["seed"] = seed_of(seed)
-    summary = run_study(
-        _changed(one, changes),
-        target,
-        evaluations=count_of("evaluations", evaluations),
-        workers=count_of("workers", workers),
-        executor=executor_of(executor),
-        progress=called_after(callback),
-        own=Own(
-            functions=functions,
-            algorithm=own,
-            calibration=calibration if isinstance(calibration, Calibration) else None,
-        ),
-    )
-    _warn_of_no_front(summary)
-    return load_study(summary.db)
+    return _changed(study, changes), Own(functions=functions, algorithm=own, calibration=own_model)
 
 
 def resume(
@@ -195,6 +209,7 @@ def resume(
     workers: int | None = None,
     executor: Executor | None = None,
     callback: "Callable[[Progress], Any] | None" = None,
+    progress: bool | None = None,
 ) -> StoredStudy:
     """Continue a study from its database alone, and from what is one's own, which no database holds.
 
@@ -209,6 +224,7 @@ def resume(
         workers: threads that simulate, all cores if None.
         executor: does the jumps in their place, see ``run``.
         callback: see ``run``.
+        progress: see ``run``.
 
     Warns:
         UserWarning: no design is feasible, see ``run``.
@@ -229,16 +245,63 @@ def resume(
     own = _own_algorithm(algorithm)
     if algorithm is not None and own is None:
         raise StudyError(complaint("algorithm", algorithm, "an own one, the study knows every other", "leave it out"))
-    summary = resume_study(
-        as_place(db, "db"),
-        evaluations=count_of("evaluations", evaluations),
-        workers=count_of("workers", workers),
-        executor=executor_of(executor),
-        progress=called_after(callback),
-        own=Own(functions=functions_of(listed("functions", functions)), algorithm=own),
-    )
+    with _heard(callback, progress) as hear:
+        summary = resume_study(
+            as_place(db, "db"),
+            evaluations=count_of("evaluations", evaluations),
+            workers=count_of("workers", workers),
+            executor=executor_of(executor),
+            progress=hear,
+            own=Own(functions=functions_of(listed("functions", functions)), algorithm=own),
+        )
     _warn_of_no_front(summary)
     return load_study(summary.db)
+
+
+@contextmanager
+def _heard(callback: Any, progress: bool | None) -> "Iterator[Callable[[Progress], Any] | None]":
+    """Yield what hears of every stored generation: a bar where one is wanted, and the callback, whose answer counts."""
+    call = called_after(callback)
+    if not (in_notebook() if progress is None else truth_of("progress", progress)):
+        yield call
+        return
+    with bar() as show:
+
+        def hear(standing: "Progress") -> Any:
+            show(standing)
+            return None if call is None else call(standing)
+
+        yield hear
+
+
+def in_notebook() -> bool:
+    """Return whether a notebook runs this process, rather than a terminal or a script."""
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    return hasattr(shell, "kernel")
+
+
+@contextmanager
+def bar(console: "Console | None" = None) -> "Iterator[Callable[[Progress], None]]":
+    """Yield what shows progress as a bar, in the notebook or on stderr."""
+    if in_notebook():
+        from IPython import display as notebook
+
+        html: Any = notebook.HTML
+        shown: Any = notebook.display(html(""), display_id=True)  # type: ignore[no-untyped-call]  # IPython has no types
+        yield lambda now: shown.update(
+            html(f"<progress value='{now.evaluations}' max='{now.budget}'></progress> {now.text()}")
+        )
+        return
+    from rich.progress import BarColumn, TextColumn
+    from rich.progress import Progress as Bar
+
+    if console is None:
+        from rich.console import Console
+
+        console = Console(stderr=True)
+    with Bar(BarColumn(bar_width=16), TextColumn("{task.description}"), console=console) as lines:
+        task = lines.add_task("simulating", total=None)
+        yield lambda now: lines.update(task, total=now.budget, completed=now.evaluations, description=now.text())
 
 
 def _warn_of_no_front(summary: "RunSummary") -> None:
@@ -294,80 +357,77 @@ def _changed(study: Study, changes: Mapping[str, Any]) -> Study:
     return budgeted(study_from_dict(values, source="study"), given=given, source="study")
 
 
-def robust(
-    study: StoredStudy | StrPath,
-    trials: int | Picked | Sequence[int | Picked] | ArrayLike | None = None,
+def run_campaign(
+    file: StrPath,
     *,
-    samples: int | None = None,
-    seed: int | None = None,
-    uncertainty: StrPath | None = None,
+    folder: StrPath | None = None,
     workers: int | None = None,
+    scheduler: str | None = None,
+    status: bool = False,
+    report: StrPath | None = None,
+    csv: StrPath | None = None,
+    force: bool = False,
 ) -> "DataFrame":
-    """Let designs of a study jump as robots are built: masses, motors, friction, gains and more within their ranges.
-
-    All designs have the same samples. What is stored of earlier calls, also of the command ``robust``, is not simulated
-    again.
+    """Run a grid of studies, or continue it where it stopped; the command ``campaign`` does the same.
 
     Args:
-        study: the study or its database.
-        trials: a trial by its number or as ``pick`` returned it, or several, such as a column ``trial``; by default the
-            front.
-        samples: jumps per design, a power of two of at least 256; by default 256, or the study's if it asks for more.
-        seed: of the samples, by default the study's.
-        uncertainty: TOML file of the ranges; by default the study's, or the shipped ones.
-        workers: threads that simulate, all cores if None. It does not change the results.
+        file: the campaign's TOML file, which names a study and lists of values for some of its keys.
+        folder: of the databases; by default one beside the file, with its name.
+        workers: threads of all studies together, all cores if None; with a scheduler, studies at a time.
+        scheduler: address of a Dask scheduler, whose workers do the jumps.
+        status: whether to run nothing, and only say how the studies stand.
+        report: HTML file for a page that compares them.
+        csv: file for a table that compares them.
+        force: replace files of another kind.
 
     Returns:
-        One row per trial, with ``trial``, ``samples``, ``failed_share`` and ``overloaded_share`` (shares of the jumps
-        that fail, and that overload a part), and for every measure its ``.mean``, ``.p05`` and ``.p95``, such as
-        ``height_m.p05``, in the unit of its name; NaN where a measure has no value in some jump.
+        One row per study: name, database, state, trials, hypervolume, size of the front, and why it failed, if it did.
 
     Raises:
-        SelectionError: a trial that is not there or did not jump, or an empty front.
-        InputError: too few samples, or no usable ranges.
-        StudyError: this code or machine computes other jumps than the stored ones.
-        DatabaseError: the study is missing, damaged, or in use by another process.
+        StudyError: an unusable campaign, or databases of another one.
+        InputError: an unusable path, or the extra for a scheduler is missing.
+        DatabaseError: another process holds the folder.
 
     Example:
         >>> import pareto_monoped as pm
-        >>> knee = pm.load_study("light.db").pick("knee")
-        >>> built = pm.robust("light.db", knee)
-        >>> bool(built["height_m.p05"][0] < knee.row.height_m)
-        True
+        >>> grid = pm.run_campaign("seeds.toml", report="seeds.html")  # doctest: +SKIP
+        >>> grid[["study", "state", "hypervolume"]]  # doctest: +SKIP
     """
     import pandas as pd
 
-    from pareto_monoped.analysis.robustness import robust as run_robust
-    from pareto_monoped.measures import MEASURE_NAMES, STATISTICS
-    from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES
-    from pareto_monoped.uncertainty.settings import Sampling, load_uncertainty
+    from pareto_monoped.campaign.coordinator import run_campaign as run_all
+    from pareto_monoped.campaign.coordinator import standings_of
+    from pareto_monoped.campaign.folder import held, places_of
+    from pareto_monoped.campaign.grid import load_campaign
+    from pareto_monoped.files import require_writable
 
-    stored = study if isinstance(study, StoredStudy) else load_study(study)
-    own = stored.study.uncertainty or Sampling(ranges=load_uncertainty())
-    results = run_robust(
-        stored.path,
-        own.ranges if uncertainty is None else load_uncertainty(as_path(uncertainty)),
-        trials=_numbers(trials),
-        samples=count_of("samples", samples) or max(own.samples, DEFAULT_SAMPLES),
-        seed=own.seed if seed is None else seed_of(seed),
-        workers=count_of("workers", workers),
-    )
-    rows: list[dict[str, Any]] = []
-    for number, result in results.items():
-        row: dict[str, Any] = {"trial": number, "samples": result.samples}
-        row |= {"failed_share": result.failed, "overloaded_share": result.overloaded}
-        for name in MEASURE_NAMES:
-            spread = result.measures.get(name)
-            row |= {f"{name}.{key}": float("nan") if spread is None else getattr(spread, key) for key in STATISTICS}
-        rows.append(row)
-    return pd.DataFrame(rows)
+    if scheduler is not None:
+        if not isinstance(scheduler, str):
+            raise InputError(complaint("scheduler", scheduler, "an address, such as 'tcp://host:8786'", "give one"))
+        require_extra("cluster", "scheduler")
+    page, table = (None if one is None else as_path(one, what) for what, one in (("report", report), ("csv", csv)))
+    for output in (page, table):
+        if output is not None:
+            require_writable(output)
+    grid = load_campaign(as_path(file, "file"))
+    place = grid.folder if folder is None else as_path(folder, "folder")
+    if truth_of("status", status):
+        standings = standings_of(places_of(grid, place))
+    else:
+        with held(place):
+            standings = standings_of(places_of(grid, place))
+            run_all(
+                standings,
+                cores=count_of("workers", workers),
+                scheduler=scheduler,
+                changed=lambda _: None,
+                notify=warnings.warn,
+            )
+    if page is not None or table is not None:
+        from pareto_monoped.campaign.page import write_results
 
-
-def _numbers(trials: Any) -> list[int] | None:
-    if trials is None:
-        return None
-    listed = as_list(trials)
-    several = list(listed) if isinstance(listed, Sequence) and not isinstance(listed, str | bytes) else [listed]
-    if not several:
-        raise InputError(complaint("number of trials", 0, "at least 1", "name one, or leave it out for the front"))
-    return [one.trial if isinstance(one, Picked) else trial_of(one) for one in several]
+        failed = {one.name: one.reason for one in standings if one.state == "failed"}
+        write_results(
+            grid, [one.place for one in standings], failed, page=page, table=table, force=truth_of("force", force)
+        )
+    return pd.DataFrame([one.as_dict() for one in standings])

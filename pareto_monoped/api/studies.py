@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from pareto_monoped.api.given import number_of, numbers_of, table_of, trial_of
+from pareto_monoped.api.given import conditions_of, html_of, number_of, trial_of, truth_of, ways_of
 from pareto_monoped.api.jumps import StrPath
 from pareto_monoped.definition.given import as_list, count_of
-from pareto_monoped.design import NAMES, Design
+from pareto_monoped.design import ALL_NAMES, VARIABLES, Design
 from pareto_monoped.errors import DesignError, InputError, SelectionError, StudyError, complaint
-from pareto_monoped.measures import is_own, near_measures
+from pareto_monoped.measures import measure
 from pareto_monoped.pareto import selectors
 from pareto_monoped.storage.address import is_address
 from pareto_monoped.storage.place import StudyPlace, place_of
@@ -52,6 +52,17 @@ class Picked:
         """Return one line: the trial and the reason."""
         return f"Picked(trial={self.trial}, why={self.why!r})"
 
+    def _repr_html_(self) -> str:
+        """Return the reason, with the measures of the objectives' kind and the variables, for notebooks."""
+        entries = [measure(name) for name in ("height_m", "energy_j", "electrical_energy_j", "mass_kg")]
+        facts: dict[str, object] = {
+            one.words: one.text(float(self.row[one.name])) for one in entries if one.name in self.row
+        }
+        for one in VARIABLES:
+            value = f"{getattr(self.design, one.name) * one.scale:.{one.decimals}f} {one.shown_unit}"
+            facts[one.label] = value.removesuffix(" 1")
+        return html_of(f"trial {self.trial}: {self.why}", facts)
+
 
 @dataclass(frozen=True, eq=False)  # without slots: cached properties need a place to keep their values
 class StoredStudy:
@@ -74,6 +85,20 @@ class StoredStudy:
         names = ", ".join(self.study.objectives.names)
         return f"StoredStudy({self.study.name!r}, {str(self.path)!r}, {trials} trials, {state}, objectives {names})"
 
+    def _repr_html_(self) -> str:
+        """Return place, trials and front, for notebooks."""
+        front, goals = self.front(), self.study.objectives
+        facts: dict[str, object] = {
+            "database": self.path,
+            "trials": f"{len(self.data.trials)}, {'finished' if self.finished else 'not finished'}",
+            "front": f"{len(front)} designs",
+            "hypervolume": f"{self.hypervolume:.4f} {goals.volume_unit}",
+        }
+        for entry in goals.measures if len(front) else ():
+            least, most = (entry.text(float(end)) for end in (front[entry.name].min(), front[entry.name].max()))
+            facts[f"front, {entry.words}"] = f"{least} to {most}"
+        return html_of(f"study {self.study.name}", facts)
+
     @cached_property
     def trials(self) -> "DataFrame":
         """All trials in order, with number, generation, variables, ``state``, ``reason`` and every stored measure.
@@ -86,6 +111,14 @@ class StoredStudy:
     def finished(self) -> bool:
         """Whether the study has ended; else it can be resumed."""
         return self.data.meta.finished
+
+    @property
+    def hypervolume(self) -> float:
+        """The hypervolume of the front from the study's reference point, in the product of the objectives' units."""
+        from pareto_monoped.pareto.objectives import hypervolume
+
+        names = list(self.study.objectives.names)
+        return hypervolume(self.data.front()[names].to_numpy(dtype=np.float64), self.study.reference_point)
 
     def front(
         self,
@@ -120,7 +153,7 @@ class StoredStudy:
             name = "include_ill_conditioned"
             raise StudyError(complaint(name, include_ill_conditioned, "True or False", "give one"))
         chosen = self._objectives(objectives) or self.study.objectives
-        given = _conditions(min_height_m, max_energy_j, at_least, at_most)
+        given = conditions_of(min_height_m, max_energy_j, at_least, at_most)
         return self.data.front(include_ill_conditioned, chosen, [condition_on(one, chosen) for one in given])
 
     def pick(
@@ -138,6 +171,7 @@ class StoredStudy:
         least: str | None = None,
         most: str | None = None,
         objectives: Sequence[str] | None = None,
+        robust: bool = False,
     ) -> Picked:
         """Pick one design; the command ``pick`` with the same words chooses the same.
 
@@ -158,6 +192,8 @@ class StoredStudy:
             least: the least of this measure or variable, whether or not it is an objective.
             most: the most of this measure or variable.
             objectives: of the front, instead of the study's own.
+            robust: choose by what 19 of 20 built robots keep, among the trials that ``robust`` has simulated again; the
+                row then has for each measure the worse of its 5th and 95th percentiles.
 
         Raises:
             SelectionError: nothing asked for, several ways to choose, an unknown name, or no design that fits; the
@@ -171,15 +207,16 @@ class StoredStudy:
         from pareto_monoped.analysis.choices import choose, dear_words
 
         chosen = self._objectives(objectives) or self.study.objectives
-        ways = _ways(by, trial, weights, compromise, nearest, least, most)
-        conditions = _conditions(min_height_m, max_energy_j, at_least, at_most)
+        ways = ways_of(by, trial, weights, compromise, nearest, least, most)
+        conditions = conditions_of(min_height_m, max_energy_j, at_least, at_most)
         if not ways and not conditions:
             raise SelectionError(
                 "pick: nothing is asked for; give by='knee', or min_height_m, or one of the other arguments"
             )
         wanted = selectors.Among(conditions=conditions, chooser=ways[0] if ways else None)
-        found = choose(self.data, wanted, chosen, notify=warnings.warn).picked
-        row = self._row(found.trial)
+        data = self._by_robustness() if truth_of("robust", robust) else self.data
+        found = choose(data, wanted, chosen, notify=warnings.warn).picked
+        row = data.trials[data.trials["trial"] == found.trial].iloc[0]
         dear = dear_words(self.path, row)
         return Picked(trial=found.trial, design=self.design(found.trial), row=row, why=found.why, dear=dear)
 
@@ -189,7 +226,7 @@ class StoredStudy:
         Raises:
             SelectionError: no trial has this number.
         """
-        return Design.from_array([self._row(trial)[name] for name in NAMES])
+        return Design(**{name: row[name] for name in ALL_NAMES if name in (row := self._row(trial))})
 
     def motors(self, trial: int) -> tuple[str, str]:
         """Return names of the motors of a trial's hip and knee, for ``simulate`` and ``build_robot``.
@@ -259,6 +296,12 @@ class StoredStudy:
         motors = np.array([known[motor.casefold()] for motor in given.motors], dtype=np.intp)
         return jumps_of(given.values, kits, self.data.calibration, workers, motors)
 
+    def _by_robustness(self) -> "StudyData":
+        from pareto_monoped.analysis.robustness import as_built
+        from pareto_monoped.storage.extra_rows import read_robustness
+
+        return as_built(self.data, read_robustness(self.path), notify=warnings.warn)[0]
+
     def _row(self, trial: int) -> "Series[Any]":
         rows = self.data.trials[self.data.trials["trial"] == trial_of(trial)]
         if len(rows) == 0:
@@ -325,72 +368,3 @@ def as_path(given: StrPath, what: str = "path", *, allowed: str = "text or a pat
     except UnicodeEncodeError:  # reports and records name it
         raise InputError(complaint(what, str(path), "UTF-8", "rename the file")) from None
     return path
-
-
-def _ways(
-    by: str | None,
-    trial: int | None,
-    weights: Sequence[float] | None,
-    compromise: Sequence[float] | None,
-    nearest: Mapping[str, float] | None,
-    least: str | None,
-    most: str | None,
-) -> list[selectors.Chooser]:
-    """Return the ways to choose that are asked for; more than one, or an unknown one, is a ``SelectionError``."""
-    ways: list[selectors.Chooser] = []
-    if by is not None:
-        if not isinstance(by, str) or by not in ("knee", "tradeoff"):
-            raise SelectionError(complaint("by", by, "'knee' or 'tradeoff'", "correct it, or use another argument"))
-        ways.append(selectors.Knee() if by == "knee" else selectors.Tradeoff())
-    if trial is not None:
-        ways.append(selectors.Trial(number=trial_of(trial)))
-    if weights is not None:
-        ways.append(selectors.Weights(values=numbers_of("weights", weights)))
-    if compromise is not None:
-        ways.append(selectors.Compromise(values=numbers_of("compromise", compromise)))
-    if nearest is not None:
-        if not (wish := _known("nearest", nearest)):
-            raise SelectionError("nearest: names no measure; give one, such as {'height_m': 1.0}")
-        ways.append(selectors.Nearest(wish=wish))
-    for what, name in (("least", least), ("most", most)):
-        if name is not None:
-            ways.append(selectors.Extreme(name=_known_name(what, name), most=what == "most"))
-    if len(ways) > 1:
-        raise SelectionError(f"ways to choose = {len(ways)}: must be at most 1, with any conditions; drop the others")
-    return ways
-
-
-def _conditions(
-    min_height_m: float | None,
-    max_energy_j: float | None,
-    at_least: Mapping[str, float] | None,
-    at_most: Mapping[str, float] | None,
-) -> tuple[selectors.Condition | selectors.MaxEnergy, ...]:
-    found: list[selectors.Condition | selectors.MaxEnergy] = []
-    if min_height_m is not None:
-        least = number_of("min_height_m", min_height_m)
-        found.append(selectors.Condition(name="height_m", side="min", value=least, asked="min_height_m"))
-    if max_energy_j is not None:
-        found.append(selectors.MaxEnergy(energy_j=number_of("max_energy_j", max_energy_j)))
-    for name, value in _known("at_least", {} if at_least is None else at_least).items():
-        found.append(selectors.Condition(name=name, side="min", value=value))
-    for name, value in _known("at_most", {} if at_most is None else at_most).items():
-        found.append(selectors.Condition(name=name, side="max", value=value))
-    return tuple(found)
-
-
-def _known(what: str, values: Any) -> dict[str, float]:
-    """Return numbers of measures and variables; raise ``InputError``, or ``SelectionError`` for an unknown name."""
-    numbers = table_of(what, values)
-    for name in numbers:
-        _known_name(what, name)
-    return numbers
-
-
-def _known_name(what: str, name: Any) -> str:
-    if not isinstance(name, str):
-        raise SelectionError(complaint(what, name, "the name of a measure or a variable", "give one"))
-    if name not in selectors.CONDITION_NAMES and not is_own(name):
-        cure = near_measures(name, selectors.CONDITION_NAMES)
-        raise SelectionError(f"{what} = {name!r}: must be a measure or a variable; {cure}")
-    return name

@@ -9,7 +9,7 @@ from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.ratiomap import JointMaps
 from pareto_monoped.actuator.search import map_of
 from pareto_monoped.cad.write.folder import FORMATS, chosen_formats
-from pareto_monoped.design import DEFAULT_RULES, NAMES, PAPER_CASES, PAPER_MOTOR, Design, RuleSet
+from pareto_monoped.design import ALL_NAMES, DEFAULT_RULES, PAPER_CASES, PAPER_MOTOR, Design, RuleSet
 from pareto_monoped.jump.calibration import Calibration, load_calibration
 from pareto_monoped.jump.calibration_defaults import DEFAULT, strength_for
 from pareto_monoped.leg.thigh_outline import maps_for
@@ -100,7 +100,7 @@ def trial_job(
     """
     row, kit = data.trials.loc[data.trials["trial"] == trial].iloc[0], data.kit_of_trial(trial)
     return Job(
-        design=Design.from_array([row[name] for name in NAMES]),
+        design=Design(**{name: row[name] for name in ALL_NAMES if name in row}),
         motor=kit.hip.motor,
         knee_motor=kit.knee.motor if kit.knee is not kit.hip else None,
         calibration=data.calibration,

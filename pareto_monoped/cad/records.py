@@ -14,7 +14,7 @@ from pareto_monoped.cad.jobs import Job
 from pareto_monoped.cad.write.design_record import MADE_BY, design_record
 from pareto_monoped.cad.write.folder import ALWAYS, FILES, RECORD, chosen_formats
 from pareto_monoped.config import read_json
-from pareto_monoped.design import DEFAULTS, NAMES, RULE_SETS, Design, RuleSet
+from pareto_monoped.design import ALL_NAMES, DEFAULTS, NAMES, RULE_SETS, Design, RuleSet
 from pareto_monoped.errors import DesignError, InputError
 from pareto_monoped.jump.calibration import calibration_of
 
@@ -221,7 +221,8 @@ def _parsed(path: Path) -> Mapping[str, Any]:
 
 def _design(searched: Mapping[str, Any]) -> Design:
     """Return the design of a record; optional variables that it does not name have their defaults."""
-    return Design.from_array([_finite(DEFAULTS | dict(searched), name) for name in NAMES])
+    names: Any = {n: _finite(DEFAULTS | dict(searched), n) for n in ALL_NAMES if n in NAMES or n in searched}
+    return Design(**names)
 
 
 def _rules(name: Any) -> RuleSet:

@@ -3,4 +3,4 @@
 Order of imports, lowest first: grid, worker; folder; coordinator, results; page.
 """
 
-__all__ = ["coordinator", "folder", "grid", "page", "results"]
+__all__ = ["coordinator", "folder", "grid", "page"]

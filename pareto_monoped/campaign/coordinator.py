@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
 from dataclasses import dataclass, field, fields
+from typing import Any
 
 from pareto_monoped.campaign.folder import NO_FEASIBLE_DESIGN, Place, State, Stored, is_ended, stored_state
 from pareto_monoped.campaign.worker import Advanced, Ended, Noted, run_study
@@ -58,6 +59,23 @@ class Standing:
     def doing(self) -> str:
         """The state in a word; the front of a study that has all its trials is being audited."""
         return "auditing" if self.state == "running" and self.evaluations >= self.budget else self.state
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return it as JSON values."""
+        return {
+            "study": self.name,
+            "database": str(self.place.db),
+            "state": self.doing,
+            "evaluations": self.evaluations,
+            "budget": self.budget,
+            "per_second": round(self.per_second, 1),
+            "seconds_left": None if self.seconds_left is None else round(self.seconds_left, 1),
+            "hypervolume": self.hypervolume,
+            "hypervolume_unit": self.hypervolume_unit,
+            "front": self.front,
+            "wall_time_s": round(self.seconds, 1),
+            "reason": self.reason,
+        }
 
 
 Changed = Callable[[Standing], object]  #: Called when a study's standing has changed.

@@ -2,8 +2,9 @@
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
+from pathlib import Path
 from string import Template
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped import __version__
+from pareto_monoped.campaign.folder import Place
 from pareto_monoped.campaign.grid import Campaign
 from pareto_monoped.campaign.results import (
     SEEDS,
@@ -19,14 +21,17 @@ from pareto_monoped.campaign.results import (
     Section,
     Spread,
     attainment,
+    csv_text,
     growth,
     levels_of,
     levels_of_section,
     pair_of,
     relative,
+    results_of,
     sections_of,
     spread_of,
 )
+from pareto_monoped.files import write_text
 from pareto_monoped.measures import Measure, measure
 from pareto_monoped.report.page import asset, embedded_json, plotly, policy
 from pareto_monoped.report.quantities import label_of, quantities_of
@@ -181,6 +186,31 @@ def _html(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
         f'<div class="scroll" tabindex="0" role="region" aria-label="Table, which scrolls"><table class="campaign">'
         f"<thead><tr>{top}</tr></thead><tbody>{body}</tbody></table></div>"
     )
+
+
+def write_results(
+    campaign: Campaign,
+    places: Sequence[Place],
+    failed: Mapping[str, str],
+    *,
+    page: Path | None,
+    table: Path | None,
+    force: bool,
+    wrote: Callable[[Path], object] = lambda _: None,
+) -> None:
+    """Write a page and a table that compare the studies of a campaign, those that are asked for.
+
+    ``failed`` has the reasons of studies that failed, by their names; ``wrote`` is called after each file.
+    """
+    if page is None and table is None:
+        return
+    results = results_of(places, failed)
+    if table is not None:
+        write_text(table, csv_text(campaign, results), force=force)
+        wrote(table)
+    if page is not None:
+        write_text(page, campaign_page(campaign, results), force=force)
+        wrote(page)
 
 
 def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:

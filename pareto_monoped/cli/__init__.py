@@ -4,7 +4,7 @@ Numbers go to stdout, messages and progress to stderr. Bad input ends with one l
 running with 1, an interrupt with 130.
 
 Order of imports, lowest first: actuator_sheets, terminal; options, process, watching; actuators, campaign, jumps,
-machines, pareto, selection, stored, studies; exports, fronts, robustness.
+machines, pareto, selection, stored, studies; exports, fronts, limit, robustness.
 """
 
 import difflib
@@ -14,14 +14,25 @@ import click
 
 from pareto_monoped import __version__
 
-#: Command -> module of this package that defines it, in the order of use.
-_COMMANDS = {
-    "pareto": "pareto", "init": "pareto", "actuators": "actuators", "simulate": "jumps", "table1": "jumps",
-    "replay": "machines", "compare": "machines",
-    "run": "studies", "resume": "studies", "status": "studies", "campaign": "campaign", "verify": "stored",
-    "repair": "stored", "trials": "stored", "front": "fronts", "pick": "fronts", "robust": "robustness",
-    "sensitivity": "robustness", "export": "exports", "report": "stored", "dashboard": "stored",
+#: Title of a group -> its commands, each with the module of this package that defines it, in the order of use.
+_GROUPS = {
+    "Begin": {"pareto": "pareto", "init": "pareto"},
+    "Gearboxes and jumps": {"actuators": "actuators", "simulate": "jumps", "table1": "jumps"},
+    "Studies": {"run": "studies", "resume": "studies", "status": "studies", "campaign": "campaign"},
+    "Choose": {
+        "front": "fronts", "pick": "fronts", "robust": "robustness", "sensitivity": "robustness", "limit": "limit",
+        "report": "stored", "dashboard": "stored", "trials": "stored",
+    },
+    "Build": {"export": "exports"},
+    "Check": {"replay": "machines", "compare": "machines", "verify": "stored", "repair": "stored"},
 }  # fmt: skip
+_COMMANDS = {command: module for group in _GROUPS.values() for command, module in group.items()}
+_EXAMPLES = (
+    ("a first study, and its front", "pareto-monoped init quick", "pareto-monoped run quick.toml"),
+    ("the least energy that reaches 0.9 m", "pareto-monoped pick quick.db --min-height 0.9"),
+    ("a page to choose from", "pareto-monoped report quick.db -o quick.html"),
+    ("CAD of the knee of the front", "pareto-monoped export quick.db --knee -o knee"),
+)
 
 
 class _Commands(click.Group):
@@ -29,6 +40,23 @@ class _Commands(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(_COMMANDS)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands by groups, their words in one column, and examples below."""
+        width = max(map(len, _COMMANDS))
+        for title, group in _GROUPS.items():
+            commands = ((name, self.get_command(ctx, name)) for name in group)
+            room = formatter.width - width - 4
+            rows = [(f"{name:<{width}}", command.get_short_help_str(room)) for name, command in commands if command]
+            with formatter.section(title):
+                formatter.write_dl(rows)
+        with formatter.section("Examples"):
+            for words, *lines in _EXAMPLES:
+                formatter.write_text(f"# {words}")
+                for line in lines:
+                    formatter.write_text(f"$ {line}")
+        formatter.write_paragraph()
+        formatter.write_text("'pareto-monoped COMMAND --help' has the options of a command.")
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         module_name = _COMMANDS.get(cmd_name)

@@ -77,12 +77,12 @@ def campaign(
             with reports(standings, as_json=as_json) as (changed, notify):
                 complete = run_campaign(standings, cores=workers, scheduler=scheduler, changed=changed, notify=notify)
     if as_json:
-        echo(json.dumps({"event": "end", "studies": [as_values(one) for one in standings]}))
+        echo(json.dumps({"event": "end", "studies": [one.as_dict() for one in standings]}))
     else:
         print_table(standings)
         echo(f"{grid.path}: {studies(len(standings))}, {counted(standings)}", err=True)
     _tell(standings, place, places)
-    if complete:
+    if complete and not (page is None and table is None):
         _write(grid, standings, page, table, force)
     if not complete:
         return 130
@@ -105,24 +105,15 @@ def _tell(standings: "Sequence[Standing]", folder: Path, places: "Sequence[Place
 def _write(
     grid: "Campaign", standings: "Sequence[Standing]", page: Path | None, table: Path | None, force: bool
 ) -> None:
-    from pareto_monoped.files import write_text
-
-    if page is None and table is None:
-        return
-    from pareto_monoped.campaign.results import results_of
+    from pareto_monoped.campaign.page import write_results
 
     failed = {one.name: one.reason for one in standings if one.state == "failed"}
-    results = results_of([one.place for one in standings], failed)
-    if table is not None:
-        from pareto_monoped.campaign.results import csv_text
+    write_results(grid, [one.place for one in standings], failed, page=page, table=table, force=force, wrote=_told)
 
-        write_text(table, csv_text(grid, results), force=force)
-        echo(f"wrote {table}", err=True)
-    if page is not None:
-        from pareto_monoped.campaign.page import campaign_page
 
-        write_text(page, campaign_page(grid, results), force=force)
-        echo(f"wrote {page} ({page.stat().st_size / 1e6:.1f} MB)", err=True)
+def _told(path: Path) -> None:
+    size = f" ({path.stat().st_size / 1e6:.1f} MB)" if path.suffix == ".html" else ""
+    echo(f"wrote {path}{size}", err=True)
 
 
 _SECONDS_BETWEEN_LINES = 5.0
@@ -174,27 +165,9 @@ def shortened(text: str, width: int) -> str:
     return f"{text[: width - tail - 1]}…{text[-tail:]}"
 
 
-def as_values(standing: "Standing") -> dict[str, Any]:
-    """Return a standing as JSON values."""
-    return {
-        "study": standing.name,
-        "database": str(standing.place.db),
-        "state": standing.doing,
-        "evaluations": standing.evaluations,
-        "budget": standing.budget,
-        "per_second": round(standing.per_second, 1),
-        "seconds_left": None if standing.seconds_left is None else round(standing.seconds_left, 1),
-        "hypervolume": standing.hypervolume,
-        "hypervolume_unit": standing.hypervolume_unit,
-        "front": standing.front,
-        "wall_time_s": round(standing.seconds, 1),
-        "reason": standing.reason,
-    }
-
-
 def _json_report(standing: "Standing") -> None:
     ended = standing.state in ("finished", "failed")
-    echo(json.dumps({"event": "study" if ended else "generation"} | as_values(standing)))
+    echo(json.dumps({"event": "study" if ended else "generation"} | standing.as_dict()))
 
 
 def _say(line: str) -> None:

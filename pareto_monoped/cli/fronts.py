@@ -3,7 +3,6 @@
 import json
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +12,7 @@ from pareto_monoped.cli import options
 from pareto_monoped.cli.options import CSV_FILE, DATABASE, force_option
 from pareto_monoped.cli.selection import condition_options, required, selector_options
 from pareto_monoped.cli.terminal import WIDTH, echo, note, wrapped
-from pareto_monoped.design import VARIABLES, Variable, in_use
+from pareto_monoped.design import KNOTS, VARIABLES, Variable, in_use
 from pareto_monoped.storage.place import StudyPlace
 
 if TYPE_CHECKING:
@@ -158,7 +157,7 @@ def _objectives(given: str | None, data: "StudyData") -> "Objectives":
 
 
 def _print_table(rows: "DataFrame", objectives: "Objectives") -> None:
-    shown = [variable for variable in VARIABLES if variable.name in rows.columns]
+    shown = [variable for variable in (*VARIABLES, *KNOTS) if variable.name in rows.columns]
     heads = [f"{entry.short} {entry.unit}".removesuffix(" 1") for entry in objectives.measures]
     widths = [max(len(head), 8) for head in heads]
     # The motors' names stand last, each in a column as wide as the longest.
@@ -238,8 +237,11 @@ def pick(
     data = read_front(db)
     compared: RobustTrials | None = None
     if by_robust:
-        known, compared = _robust(db)
-        chosen = choose(replace(known, trials=compared.rows), wanted, notify=note)
+        from pareto_monoped.analysis.robustness import as_built
+        from pareto_monoped.storage.extra_rows import read_robustness
+
+        known, compared = as_built(read_study(db), read_robustness(db), notify=note)
+        chosen = choose(known, wanted, notify=note)
     else:
         chosen = choose_of(db, wanted, notify=note)
     rows, picked = chosen.rows, chosen.picked
@@ -292,20 +294,6 @@ def pick(
         if compared is not None:
             many = f"compared are the {len(compared.rows)} designs whose robustness is stored and that rarely fail"
             echo(wrapped(f"{many}; 'robust DB --trial N' adds others"))
-
-
-def _robust(db: StudyPlace) -> "tuple[StudyData, RobustTrials]":
-    """Return the study, and its trials by what is stored of their robustness; refuse them if they have no front."""
-    from pareto_monoped.analysis.robustness import robust_front, robust_trials
-    from pareto_monoped.storage.extra_rows import read_robustness
-    from pareto_monoped.storage.reader import read_study
-
-    data = read_study(db)
-    trials = robust_trials(data, read_robustness(db))
-    if trials.others:
-        note(f"left out: {trials.others} trials with other ranges, samples or seed")
-    robust_front(data, trials)
-    return data, trials
 
 
 def _print_alternatives(others: "tuple[Alternative, ...]", tolerance: float) -> None:

@@ -12,13 +12,25 @@ from pareto_monoped.cli import options
 from pareto_monoped.cli.options import CSV_FILE, Local, chosen_motors, force_option, motor_options
 from pareto_monoped.cli.terminal import echo, new_console, note
 from pareto_monoped.cli.watching import require_what_shows, view_jump, write_films
-from pareto_monoped.design import DEFAULT_RULES, NAMES, PAPER_CASES, PAPER_MOTOR, RULE_SETS, VARIABLES, Design, RuleSet
+from pareto_monoped.design import (
+    ALL_NAMES,
+    DEFAULT_RULES,
+    NAMES,
+    PAPER_CASES,
+    PAPER_MOTOR,
+    RULE_SETS,
+    VARIABLES,
+    Design,
+    RuleSet,
+    control_of,
+)
 from pareto_monoped.errors import DesignError, SimulationError, complaint, unknown_name
 from pareto_monoped.jump.calibration_defaults import DEFAULT
 
 if TYPE_CHECKING:
     from pareto_monoped.actuator.ratiomap import JointMaps
     from pareto_monoped.jump.calibration import Calibration
+    from pareto_monoped.jump.laws import Law
     from pareto_monoped.jump.single import JumpResult
     from pareto_monoped.jump.table1 import Row
 
@@ -58,6 +70,11 @@ _VARIABLES = "\n".join(
     show_default=True,
     help="Name or TOML file.",
 )
+@click.option(
+    "--controller",
+    metavar="NAME",
+    help="virtual_leg, or a profile with its knots: torque_over_time:8.  [default: the calibration's]",
+)
 @motor_options()
 @click.option("--rules", type=click.Choice(RULE_SETS), help=f"Rules of the gearboxes.  [default: {DEFAULT_RULES}]")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
@@ -80,6 +97,7 @@ def simulate(
     case: str,
     changes: tuple[str, ...],
     calibration_name: str,
+    controller: str | None,
     motor: str | None,
     hip_motor: str | None,
     knee_motor: str | None,
@@ -108,6 +126,8 @@ def simulate(
     require_what_shows(gif, video, view)
     design = _design(case, changes)
     calibration = load_calibration(calibration_name)
+    if controller is not None:
+        calibration = calibration.under(_law(controller))
     hip, knee = chosen_motors(motor, hip_motor, knee_motor)
     maps = maps_for(hip, knee, rules_for(calibration_name, rules))
     served = {(maps.of(joint), getattr(design, f"{joint}_ratio")) for joint in JOINTS}
@@ -157,13 +177,23 @@ def _design(case: str, changes: tuple[str, ...]) -> Design:
         name = name.strip()
         if not equals:
             raise DesignError(f"--set {change!r}: must be NAME=X; give for example knee_ratio=6.0")
-        if name not in NAMES:
+        if name not in ALL_NAMES:
             raise DesignError(unknown_name("--set name", name, NAMES))
         try:
             numbers[name] = float(text)
         except ValueError:
             raise DesignError(complaint(name, text, "a number", "give for example 0.4")) from None
     return PAPER_CASES[case].design.replace(numbers)
+
+
+def _law(text: str) -> "Law":
+    """Return the controller of an option, such as "torque_over_time:8"."""
+    from pareto_monoped.jump.laws import law_of
+
+    kind, colon, knots = text.partition(":")
+    if colon and not knots.isdigit():
+        raise DesignError(complaint("--controller", text, "KIND or KIND:KNOTS", "give for example torque_over_time:8"))
+    return law_of({"kind": kind} | ({"knots": int(knots)} if colon else {}), source="--controller", error=DesignError)
 
 
 def _outside(design: Design) -> list[str]:
@@ -217,7 +247,6 @@ def _add_gear_life(report: dict[str, Any], result: "JumpResult", maps: "JointMap
 
 
 def _audit(design: Design, maps: "JointMaps", calibration: "Calibration") -> dict[str, Any]:
-    from pareto_monoped.design import CONTROL, columns
     from pareto_monoped.jump.audit import audit
     from pareto_monoped.jump.balance import energy_balance
     from pareto_monoped.robot.population import robot_arrays
@@ -228,7 +257,7 @@ def _audit(design: Design, maps: "JointMaps", calibration: "Calibration") -> dic
     first = {
         name: column[0].item() for name, column in audits.items() if name not in ("status", "height_m", "energy_j")
     }
-    balance = energy_balance(robot_arrays(values, maps, calibration.mass), columns(values, CONTROL), calibration)
+    balance = energy_balance(robot_arrays(values, maps, calibration.mass), control_of(values), calibration)
     return {
         **{name: _plain(value) if isinstance(value, float) else value for name, value in first.items()},
         "energy": asdict(balance) | {"joint_work_j": balance.joint_work_j, "residual_j": balance.residual_j},

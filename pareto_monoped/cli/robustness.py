@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from pareto_monoped.pareto.objectives import Objectives
     from pareto_monoped.pareto.selectors import Condition, MaxEnergy, Selector
     from pareto_monoped.uncertainty.sensitivity import FactorInfluence, Sensitivity
-    from pareto_monoped.uncertainty.settings import Uncertainty
     from pareto_monoped.uncertainty.statistics import Robustness
 
 
@@ -71,7 +70,9 @@ def robust(
     """
     from pareto_monoped.analysis.choices import settled_front
     from pareto_monoped.analysis.robustness import robust as run_robust
+    from pareto_monoped.analysis.robustness import sampling
     from pareto_monoped.storage.front_reader import read_front
+    from pareto_monoped.uncertainty.settings import load_uncertainty
 
     if trials and every > 1:
         raise click.UsageError("--every goes with the front, not with --trial; drop one")
@@ -79,7 +80,7 @@ def robust(
         raise click.UsageError("conditions make the front, and --trial names trials; drop one")
     place = options.where(processes, scheduler, workers)
     kept = read_front(db)
-    ranges, samples, seed = asked(kept.study, uncertainty, samples, seed)
+    ranges, samples, seed = sampling(kept.study, load_uncertainty(uncertainty) if uncertainty else None, samples, seed)
     front = settled_front(db, conditions, notify=note) if conditions else kept.rows
     chosen = list(trials) or front["trial"].tolist()[::every]
     if count and chosen:
@@ -104,19 +105,6 @@ def robust(
         echo(json.dumps({"uncertainty": ranges.name, "samples": samples, "seed": seed, "trials": shown}, indent=2))
     else:
         _print(results, kept.study.objectives)
-
-
-def asked(study: "Study", file: Path | None, samples: int | None, seed: int | None) -> "tuple[Uncertainty, int, int]":
-    """Ranges, number of samples and seed that options ask for; without them the study's own, or the shipped ones."""
-    from pareto_monoped.uncertainty.samples import DEFAULT_SAMPLES
-    from pareto_monoped.uncertainty.settings import Sampling, load_uncertainty
-
-    own = study.uncertainty or Sampling(ranges=load_uncertainty())
-    return (
-        own.ranges if file is None else load_uncertainty(file),
-        max(own.samples, DEFAULT_SAMPLES) if samples is None else samples,
-        own.seed if seed is None else seed,
-    )
 
 
 def _print(results: "Mapping[int, Robustness]", objectives: "Objectives") -> None:
@@ -187,13 +175,15 @@ def sensitivity(
     within its range. Results are stored in DB; what is there is not simulated again.
     """
     from pareto_monoped.analysis.choices import choose_of
+    from pareto_monoped.analysis.robustness import sampling
     from pareto_monoped.analysis.sensitivity import sensitivity as find
     from pareto_monoped.pareto.selectors import Trial
     from pareto_monoped.storage.front_reader import read_front
+    from pareto_monoped.uncertainty.settings import load_uncertainty
 
     place = options.where(processes, scheduler, workers)
     wanted, kept = required(selector), read_front(db)
-    ranges, _, chosen_seed = asked(kept.study, uncertainty, None, seed)
+    ranges, _, chosen_seed = sampling(kept.study, load_uncertainty(uncertainty) if uncertainty else None, None, seed)
     if isinstance(wanted, Trial):
         trial = wanted.number  # which need not be on the front
     else:

@@ -247,22 +247,12 @@ def progress_reports(as_json: bool = False) -> "Iterator[Callable[[Progress], No
     if as_json:
         yield _json_report
     elif sys.stderr is not None and sys.stderr.isatty():
-        yield from _bar()
+        from pareto_monoped.api.running import bar
+
+        with bar(new_console(stderr=True)) as show:
+            yield show
     else:
         yield _line_reports()
-
-
-def _bar() -> "Iterator[Callable[[Progress], None]]":
-    from rich.progress import BarColumn, TextColumn
-    from rich.progress import Progress as Bar
-
-    with Bar(BarColumn(bar_width=16), TextColumn("{task.description}"), console=new_console(stderr=True)) as bar:
-        task = bar.add_task("simulating", total=None)
-
-        def show(progress: "Progress") -> None:
-            bar.update(task, total=progress.budget, completed=progress.evaluations, description=_described(progress))
-
-        yield show
 
 
 def _json_report(progress: "Progress") -> None:
@@ -289,15 +279,6 @@ def _line_reports() -> "Callable[[Progress], None]":
         nonlocal last
         if time.monotonic() - last >= _SECONDS_BETWEEN_LINES:
             last = time.monotonic()
-            echo(_described(progress), err=True)
+            echo(progress.text(), err=True)
 
     return show
-
-
-def _described(progress: "Progress") -> str:
-    headline = f", {progress.at_height.text()}" if progress.at_height else ""
-    minutes, seconds = divmod(round(progress.seconds_left), 60)
-    return (
-        f"{progress.evaluations}/{progress.budget}, {progress.per_second:.0f}/s, {minutes}:{seconds:02d} left, "
-        f"hypervolume {progress.hypervolume:.2f}{headline}"
-    )

@@ -4,6 +4,8 @@ from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 import numba
+import numba.extending
+from llvmlite import ir
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -20,6 +22,21 @@ def c_function(signature: Any, function: Callable[..., object]) -> Any:
     not notice a change of a function or constant in another file.
     """
     return _kept(lambda **options: numba.cfunc(signature, **options), function).ctypes
+
+
+@numba.extending.intrinsic  # type: ignore[untyped-decorator]  # numba has no types
+def call_address(_: Any, address: Any, first: Any, second: Any, third: Any) -> Any:
+    """Call the C function at an address with three pointers to float64; it returns nothing."""
+    pointer = numba.types.CPointer(numba.types.float64)
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        double = ir.DoubleType().as_pointer()
+        function = ir.FunctionType(ir.VoidType(), [double] * 3).as_pointer()
+        pointers = [builder.bitcast(value, double) for value in values[1:]]
+        builder.call(builder.inttoptr(values[0], function), pointers)
+        return context.get_dummy_value()
+
+    return numba.types.void(address, pointer, pointer, pointer), code
 
 
 def _kept(compiler: Callable[..., Any], function: Callable[..., object], **options: Any) -> Any:

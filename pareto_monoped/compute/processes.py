@@ -15,16 +15,18 @@ import threading
 import time
 import traceback
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor, Future
-from contextlib import suppress
+from contextlib import contextmanager, suppress
+from multiprocessing import connection as connections
 from multiprocessing.connection import Connection, Pipe
 from typing import Any
 
 from pareto_monoped.compute.crew import LostError, Member, Staff, Task
 
 GRACE_S = 1.0  #: From the word to end until a process is killed. Our own choice: a user waits two seconds at most.
-_TERMINAL = {signal.SIGINT, signal.SIGHUP}  #: A terminal sends these to all its processes; only the first answers.
+#: A terminal sends these to all its processes; only the first answers. Windows has no SIGHUP.
+_TERMINAL = {signal.SIGINT, getattr(signal, "SIGHUP", signal.SIGINT)}
 _PROGRAM = "import sys; from pareto_monoped.compute.processes import serve; serve(int(sys.argv[1]))"
 _STOP, _END = b"stop", b"end"  #: What a process is told besides tasks, which are pickles; a number follows ``stop``.
 _RESULT, _PROBLEM, _MESSAGE = b"r", b"p", b"m"  #: Before each pickle that a process sends back.
@@ -37,6 +39,21 @@ def _how_it_ended(code: int) -> Exception:
     return LostError(f"its process ended by itself with code {code}")
 
 
+@contextmanager
+def _inheriting(handle: int) -> Iterator[dict[str, Any]]:
+    """Yield what makes ``Popen`` start a process that has a handle of this one and does not hear the terminal."""
+    if sys.platform == "win32":
+        os.set_handle_inheritable(handle, True)
+        inherited = subprocess.STARTUPINFO(lpAttributeList={"handle_list": [handle]})
+        yield {"startupinfo": inherited, "creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, _TERMINAL)  # a new process inherits it
+    try:
+        yield {"pass_fds": [handle]}
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 class _Line:
     """A process and the connection to it."""
 
@@ -46,16 +63,15 @@ class _Line:
         self.sending = threading.Lock()
         # Use this process's import path, never the working directory.
         path = {"PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, _TERMINAL)  # a new process inherits it
         try:
-            self.process = subprocess.Popen(
-                [sys.executable, "-P", "-c", _PROGRAM, str(theirs.fileno())],
-                stdin=subprocess.DEVNULL,
-                pass_fds=[theirs.fileno()],
-                env=os.environ | path | dict(environment),
-            )
+            with _inheriting(theirs.fileno()) as how:
+                self.process = subprocess.Popen(
+                    [sys.executable, "-P", "-c", _PROGRAM, str(theirs.fileno())],
+                    stdin=subprocess.DEVNULL,
+                    env=os.environ | path | dict(environment),
+                    **how,
+                )
         finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
             theirs.close()  # the process has its own: when it ends, ours reads the end of the file
 
     def tell(self, word: bytes) -> None:
@@ -306,7 +322,8 @@ def serve(handle: int) -> None:
     global _parent, _at_work
     with suppress(OSError):
         os.dup2(2, 1)  # what a library prints is not among the results of a command
-    _parent = Connection(handle)
+    kind = getattr(connections, "PipeConnection", Connection)  # Windows has the first alone
+    _parent = kind(handle)
     tasks: queue.SimpleQueue[bytes] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(_parent, tasks), daemon=True).start()
     while True:

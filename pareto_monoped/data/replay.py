@@ -12,11 +12,16 @@ import mujoco
 import numpy as np
 
 
-def virtual_leg(jump: dict, hip: float, knee: float, speed: np.ndarray) -> tuple[np.ndarray, float]:
-    """Torques of the virtual spring, damper and torsional spring, and the height of the foot's centre below the hip."""
+def foot(jump: dict, hip: float, knee: float) -> tuple[float, float, float, float]:
+    """The place (x, z) of the foot from the hip, then from the knee."""
     thigh, shank = jump["thigh_length_m"], jump["shank_length_m"]
     shank_x, shank_z = -shank * np.sin(hip + knee), -shank * np.cos(hip + knee)
-    rx, rz = -thigh * np.sin(hip) + shank_x, -thigh * np.cos(hip) + shank_z
+    return -thigh * np.sin(hip) + shank_x, -thigh * np.cos(hip) + shank_z, shank_x, shank_z
+
+
+def virtual_leg(jump: dict, hip: float, knee: float, speed: np.ndarray) -> tuple[np.ndarray, float]:
+    """Torques of the virtual spring, damper and torsional spring, and the height of the foot's centre below the hip."""
+    rx, rz, shank_x, shank_z = foot(jump, hip, knee)
     length = np.sqrt(rx * rx + rz * rz)
     sin, cos = -rx / length, -rz / length
     alpha = np.arctan2(-rx, -rz)
@@ -26,6 +31,23 @@ def virtual_leg(jump: dict, hip: float, knee: float, speed: np.ndarray) -> tuple
     across = -jump["torsional_stiffness_n_m_per_rad"] * alpha / length
     force = np.array([-axial * sin - across * cos, -axial * cos + across * sin - jump["weight_n"]])
     return jacobian.T @ force, rz
+
+
+def profile(jump: dict, time: float, below: tuple[float, float]) -> np.ndarray:
+    """Torques of a profile: knots over time or over the leg's length, with straight lines or cubics between them."""
+    place = time if jump["law"] == "torque_over_time" else np.hypot(*below)
+    count = jump["knots"]
+    along = np.clip((place - jump["first_knot"]) * jump["per_profile"], 0.0, 1.0) * (count - 1)
+    k = min(int(along), count - 2)
+    u = along - k
+    knots = np.array([jump["hip_knots"], jump["knee_knots"]]) * np.array(jump["torque_limit_n_m"])[:, None]
+    start, end = knots[:, k], knots[:, k + 1]
+    if not jump["cubic"]:
+        return start + u * (end - start)
+    before = knots[:, k - 1] if k > 0 else 2.0 * start - end
+    after = knots[:, k + 2] if k + 2 < count else 2.0 * end - start
+    out, into = 0.5 * (end - before), 0.5 * (after - start)
+    return start + u * (out + u * (3.0 * (end - start) - 2.0 * out - into + u * (out + into - 2.0 * (end - start))))
 
 
 def limited(jump: dict, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
@@ -80,6 +102,8 @@ def replay(folder: Path, place: str = "") -> tuple[float, float, float]:
         ahead = data.qvel + jump["read_back_s"] * (data.qvel - before) / jump["timestep_s"]
         before = data.qvel.copy()
         wanted, below = virtual_leg(jump, q[motors[0]], q[motors[1]], speed)
+        if "law" in jump:
+            wanted = profile(jump, step * jump["timestep_s"], foot(jump, *q[motors])[:2])
         clearance = q[z] + below - jump["foot_radius_m"]
         tick = step % jump["period_steps"] == 0 and not latched
         if tick:

@@ -38,9 +38,10 @@ from pareto_monoped.definition.variables import (
     text_of,
     variables_of,
 )
-from pareto_monoped.design import DEFAULTS, NAMES, RuleSet
+from pareto_monoped.design import ALL_DEFAULTS, ALL_NAMES, KNOT_NAMES, NAMES, RuleSet
 from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION, is_stand, rules_for, strength_for
+from pareto_monoped.jump.laws import PAPER_LAW, Law, law_of
 from pareto_monoped.measures import SHARE_MEASURES, is_own, is_robust
 from pareto_monoped.pareto.objectives import Objectives, ReferencePoint
 from pareto_monoped.strength.groups import GROUP_MEASURES
@@ -60,7 +61,7 @@ class Study:
     the study ends; ill-conditioned designs then leave it. ``strength`` says whether a feasible design must hold: every
     measure of strength is then constrained. ``gear_list`` says whether a free gear ratio goes through the list of
     gearboxes, and a stored design has their real ratios; else it is any ratio, as up to version 0.2.0. ``engine`` makes
-    the jumps in place of the calibration's. ``uncertainty``
+    the jumps in place of the calibration's. ``controller`` is the law of the motors. ``uncertainty``
     is there where the file has such a table, or an objective or a constraint is of jumps under uncertainty.
     ``shared_iterations`` says whether the iterations of a weighted search are each weight's share of the budget,
     because the file gives none; it is not stored.
@@ -80,6 +81,7 @@ class Study:
     knee_motor: Named = None
     calibration: str
     engine: Literal["mujoco", "compiled"] | None = None
+    controller: Law = PAPER_LAW
     rules: RuleSet = "paper"
     evaluations: int
     seed: int
@@ -173,22 +175,27 @@ class Study:
         return {name: self.constraints.value(f"min_{name}") or LEAST_SAFETY for name in GROUP_MEASURES.values()}
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the columns of its designs: ``NAMES``, or ``ALL_NAMES`` under a torque profile."""
+        return ALL_NAMES if KNOT_NAMES[-1] in self.variables else NAMES
+
+    @property
     def free(self) -> tuple[str, ...]:
-        """Names of the free variables, in the order of ``NAMES``."""
-        return tuple(name for name in NAMES if isinstance(self.variables[name], Bounds))
+        """Names of the free variables, in the order of ``names``."""
+        return tuple(name for name in self.names if isinstance(self.variables[name], Bounds))
 
     @property
     def lower(self) -> NDArray[np.float64]:
-        """Lower bound of each variable, or its fixed value; in the order of ``NAMES``."""
+        """Lower bound of each variable, or its fixed value; in the order of ``names``."""
         return np.array([v.lower if isinstance(v, Bounds) else v for v in self._ordered()])
 
     @property
     def upper(self) -> NDArray[np.float64]:
-        """Upper bound of each variable, or its fixed value; in the order of ``NAMES``."""
+        """Upper bound of each variable, or its fixed value; in the order of ``names``."""
         return np.array([v.upper if isinstance(v, Bounds) else v for v in self._ordered()])
 
     def _ordered(self) -> list[Bounds | float]:
-        return [self.variables[name] for name in NAMES]
+        return [self.variables[name] for name in self.names]
 
     def as_dict(self) -> dict[str, Any]:
         """Return the study as plain values in the form of its file; ``study_from_dict`` reads it back.
@@ -203,10 +210,14 @@ class Study:
         for key, default in (defaults | dict.fromkeys(MOTOR_KEYS)).items():
             if plain[key] == default:
                 del plain[key]
+        if self.controller == PAPER_LAW:
+            del plain["controller"]
+        else:
+            plain["controller"] = self.controller.as_dict()
         plain["variables"] = {
             name: asdict(v) if isinstance(v, Bounds) else v
-            for name, v in zip(NAMES, self._ordered(), strict=True)
-            if v != DEFAULTS.get(name)
+            for name, v in zip(self.names, self._ordered(), strict=True)
+            if v != ALL_DEFAULTS.get(name)
         }
         plain["objectives"] = stored_objectives(self.objectives)
         plain["constraints"] = self.constraints.as_dict()
@@ -281,11 +292,13 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
     constraints = constraints_of(file.constraints, strength=file.strength, robust=robust, source=source)
     table = {} if file.uncertainty is None and any(map(is_robust, constraints.measures)) else file.uncertainty
     plain: dict[str, Any] = {name: getattr(file, name) for name in _AS_IN_FILE}
+    law = PAPER_LAW if file.controller is None else law_of(file.controller, source=source, error=StudyError)
     plain |= named_motors(file.motor, file.hip_motor, file.knee_motor, source)
     return Study(
         **plain,
         rules=rules,
-        variables=variables_of(file.variables, file.case, source),
+        controller=law,
+        variables=variables_of(file.variables, file.case, source, law),
         objectives=objectives,
         constraints=constraints,
         reference_point=corner,

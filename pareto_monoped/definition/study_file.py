@@ -21,7 +21,7 @@ from pareto_monoped.definition.algorithms import (
 from pareto_monoped.definition.given import as_plain
 from pareto_monoped.definition.goals import flattened
 from pareto_monoped.definition.variables import MOTOR_KEYS, number_of
-from pareto_monoped.design import NAMES, RuleSet
+from pareto_monoped.design import ALL_NAMES, NAMES, RuleSet
 from pareto_monoped.errors import StudyError, unknown_name
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, ReferencePoint
 
@@ -73,6 +73,7 @@ class StudyFile(Strict):
     knee_motor: Any = None
     calibration: Annotated[str, Field(min_length=1, max_length=1000)] = "reference"
     engine: Literal["mujoco", "compiled"] | None = None
+    controller: Any = None
     rules: RuleSet = "paper"  # of a stored study; a file without it takes the default of ``rules_for``
     evaluations: Annotated[int, Field(ge=1, le=100_000_000)]
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 1
@@ -153,7 +154,7 @@ def algorithm_of(file: StudyFile, corner: ReferencePoint, source: str) -> Algori
     settings: AlgorithmSettings = checked(kind, table, source=f"{source}, table [algorithm]", error=StudyError)
     if isinstance(settings, WeightedSettings):
         for key, value in settings.start.items():
-            if key not in NAMES:
+            if key not in ALL_NAMES:
                 raise StudyError(f"{source}: {unknown_name('variable in algorithm.start', key, NAMES)}")
             number_of(f"{source}: algorithm.start.{key}", key, value)
         _check_weighted(file, corner, source)

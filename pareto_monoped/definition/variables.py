@@ -6,11 +6,23 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
-from pareto_monoped.design import LENGTHS, NAMES, PAPER_CASES, PAPER_MOTOR, VARIABLES
+from pareto_monoped.design import (
+    ALL_NAMES,
+    KNOT_NAMES,
+    KNOTS,
+    LENGTHS,
+    NAMES,
+    PAPER_CASES,
+    PAPER_CONTROL,
+    PAPER_MOTOR,
+    VARIABLES,
+)
 from pareto_monoped.errors import StudyError, complaint, unknown_name
+from pareto_monoped.jump.laws import OF_VIRTUAL_LEG, PAPER_LAW, Law
 
 _LIMITS = {"m": (0.05, 2.0), "1": (1.0, 100.0), "rad": (0.0, 3.0)}
 """Unit -> allowed range. Values beyond it are typing errors; controller gains may be any number from 0."""
+_PUSH_TIMES_S = (0.01, 3.0)
 _REST_LENGTHS_M = (0.5, 100.0)  # longer than any leg; a longer spring acts by its product with K alone
 
 
@@ -22,19 +34,28 @@ class Bounds:
     upper: float
 
 
-def variables_of(given: Mapping[str, Any], case: str | None, source: str) -> dict[str, Bounds | float]:
+def variables_of(
+    given: Mapping[str, Any], case: str | None, source: str, law: Law = PAPER_LAW
+) -> dict[str, Bounds | float]:
     """Return what each variable may be: as given, else as in the paper's case, else free within the paper's bounds.
+
+    The knots of a torque profile are free within their bounds; what the law does not read is fixed, K, C and T at 0.
 
     Raises:
         StudyError: an unknown name, impossible bounds, nothing free, or links shorter than the start height.
     """
-    for name in given:
-        if name not in NAMES:
-            raise StudyError(f"{source}: {unknown_name('variable', name, NAMES)}")
+    known = names_under(law)
+    for name, value in given.items():
+        if name not in known and not (name in PAPER_CONTROL and value == 0.0):  # which a stored study has
+            raise StudyError(f"{source}: {unknown_name('variable', name, known)}")
     chosen: dict[str, Bounds | float] = {}
-    for variable in VARIABLES:
+    for variable in VARIABLES if law == PAPER_LAW else (*VARIABLES, *KNOTS):
         value = given.get(variable.name)
-        if value is not None:
+        if variable.name not in known:
+            chosen[variable.name] = 0.0 if variable.default is None else variable.default
+        elif variable in KNOTS and value is None:
+            chosen[variable.name] = Bounds(lower=variable.lower, upper=variable.upper)
+        elif value is not None:
             chosen[variable.name] = _variable(variable.name, value, source)
         elif variable.default is not None:
             chosen[variable.name] = variable.default
@@ -55,6 +76,12 @@ def variables_of(given: Mapping[str, Any], case: str | None, source: str) -> dic
     return chosen
 
 
+def names_under(law: Law) -> tuple[str, ...]:
+    """Return the names of the variables that a study has under a law: those of the hardware, and the law's own."""
+    own = [variable.name for variable in law.variables]
+    return tuple(name for name in ALL_NAMES if name in own or (name in NAMES and name not in OF_VIRTUAL_LEG))
+
+
 def _variable(name: str, given: Any, source: str) -> Bounds | float:
     key = f"{source}: variables.{name}"
     if isinstance(given, Mapping):
@@ -71,7 +98,7 @@ def _variable(name: str, given: Any, source: str) -> Bounds | float:
         return bounds
     if not isinstance(given, int | float):
         low, high = _limits(name)
-        usual = next(variable for variable in VARIABLES if variable.name == name)
+        usual = next(variable for variable in (*VARIABLES, *KNOTS) if variable.name == name)
         example = f'{{"lower": {usual.lower:g}, "upper": {usual.upper:g}}}'
         allowed = f"a number from {low:g} to {high:g}, or a range such as {example}"
         raise StudyError(complaint(key, given, allowed, "correct it"))
@@ -80,6 +107,8 @@ def _variable(name: str, given: Any, source: str) -> Bounds | float:
 
 def _limits(name: str) -> tuple[float, float]:
     """Return the least and the greatest value of a variable."""
+    if name in KNOT_NAMES:
+        return (-1.0, 1.0) if "_knot_" in name else _PUSH_TIMES_S
     unit = next(variable.unit for variable in VARIABLES if variable.name == name)
     return _REST_LENGTHS_M if name == "rest_length_m" else _LIMITS.get(unit, (0.0, 1e6))
 

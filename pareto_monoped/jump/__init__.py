@@ -1,6 +1,6 @@
-"""Stage 2: a robot becomes a MuJoCo model, jumps under the paper's controller, and its jump is measured.
+"""Stage 2: a robot becomes a MuJoCo model, jumps under a controller, and its jump is measured.
 
-Order of imports, lowest first: calibration_defaults, controller_record, quiet, rebound; calibration, virtual_leg;
+Order of imports, lowest first: calibration_defaults, controller_record, quiet, rebound; torques; laws; calibration;
 controller, end_stops, rail_leg; callback, model; document, planar, variations; gravity, population; engines;
 evaluate, frames; peers, replay, shared, single; balance; audit; screen, table1.
 """
@@ -17,6 +17,7 @@ __all__ = [
     "evaluate",
     "frames",
     "gravity",
+    "laws",
     "model",
     "peers",
     "population",

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.ratiomap import Maps, joint_maps
 from pareto_monoped.compute.chunks import pace_of, spread, task_threads
-from pareto_monoped.design import CONTROL, DEFAULTS, NAMES, PAPER_NAMES, RATIOS, Floats, columns, complete
+from pareto_monoped.design import ALL_DEFAULTS, ALL_NAMES, NAMES, PAPER_NAMES, RATIOS, Floats, complete, control_of
 from pareto_monoped.jump.balance import Balanced, balanced
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.controller_record import MOST_DELAY
@@ -114,8 +114,9 @@ def perturbed(designs: Floats, count: int, rng: np.random.Generator) -> Floats:
     copies = np.repeat(np.atleast_2d(complete(designs)), count, axis=0)
     places = [NAMES.index(name) for name in PERTURBED]
     copies[:, places] *= 1.0 + PERTURBATION * rng.uniform(-1.0, 1.0, (len(copies), len(places)))
-    for name, default in DEFAULTS.items():
-        place = NAMES.index(name)
+    for place, name in enumerate(ALL_NAMES[: copies.shape[1]]):
+        if (default := ALL_DEFAULTS.get(name)) is None:
+            continue
         factor = 1.0 + PERTURBATION * rng.uniform(-1.0, 1.0, len(copies))
         copies[:, place] *= np.where(copies[:, place] == default, 1.0, factor)
     return copies
@@ -242,7 +243,7 @@ def _balanced_of(text: str, values: Floats) -> Balanced:
 def _balanced(setup: Setup, values: Floats, workers: int) -> Balanced:
     (maps,), calibration = setup
     robots = robot_arrays(values, maps, calibration.mass)
-    return balanced(robots, columns(values, CONTROL), calibration, workers)
+    return balanced(robots, control_of(values), calibration, workers)
 
 
 ONLY_IN_FULL = ("quarter_step_height_m", "quarter_step_energy", "control_period_height_m", "control_period_energy")

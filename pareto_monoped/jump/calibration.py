@@ -21,6 +21,7 @@ from pareto_monoped.config import NotNegative, Positive, Strict, checked, read_t
 from pareto_monoped.errors import CalibrationError, InputError, unknown_name
 from pareto_monoped.jump.calibration_defaults import DEFAULT, STAND
 from pareto_monoped.jump.controller_record import MOST_DELAY
+from pareto_monoped.jump.laws import PAPER_LAW, AnyLaw, Law, VirtualLeg
 from pareto_monoped.robot.population import MassOptions
 
 Share = Annotated[float, Field(gt=0.0, le=1.0)]
@@ -181,13 +182,14 @@ class Flight(Strict):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Controller(Strict):
-    """What the paper's final text leaves open about the virtual controller (section II-B)."""
+    """The law of the motors, and what the paper's final text leaves open about the virtual leg (section II-B)."""
 
     #: L0, rest length of the virtual spring; 10 m in a passage missing from the final text
     rest_length_m: Positive = 10.0
     gravity_feed_forward: NotNegative = 1.0  #: factor on the term m g of F_z; 1 in the paper
     weight: Literal["robot", "base"] = "robot"  #: whose mass m is, that of the whole ``robot`` or of its ``base``
     flight: Flight | None = None  #: what the motors do while the foot is off the floor; None: nothing
+    law: AnyLaw = PAPER_LAW  #: what the motors are told while it is on the floor
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -303,6 +305,10 @@ class Calibration(Strict):
             return self
         return replace(self, simulation=replace(self.simulation, engine=engine))
 
+    def under(self, law: Law) -> "Calibration":
+        """Return the same calibration with a law of the motors."""
+        return replace(self, controller=replace(self.controller, law=law))  # type: ignore[arg-type]  # or one of a script
+
     @property
     def label(self) -> str:
         """Name and version, as quoted in results."""
@@ -315,7 +321,7 @@ _LATER = {
         *("knee_torque_scale", "regeneration_share", "standby_power_w", "efficiency", "battery", "winding_rise_k"),
         *("elastic", "drive_damping_ratio", "backlash_rad", "gear_loss"),
     ),
-    "controller": ("weight", "flight"),
+    "controller": ("weight", "flight", "law"),
     "simulation": ("control_period_s", "delay_s", "positions_read", "engine"),
 }  #: Fields that calibrations did not always have, by table.
 
@@ -327,13 +333,18 @@ def calibration_values(calibration: Calibration) -> dict[str, Any]:
     """
     values: dict[str, Any] = json.loads(json.dumps(asdict(calibration)))
     for table, names in _LATER.items():
-        defaults = {field.name: field.default for field in fields(getattr(calibration, table))}
+        defaults = {field.name: _plain(field.default) for field in fields(getattr(calibration, table))}
         values[table] = {
             name: value for name, value in values[table].items() if name not in names or value != defaults[name]
         }
     if calibration.stand is None:
         del values["stand"]
     return values
+
+
+def _plain(default: Any) -> Any:
+    """Return a default as JSON has it."""
+    return asdict(default) if isinstance(default, VirtualLeg) else default
 
 
 def on_stand(calibration: Calibration) -> Calibration:

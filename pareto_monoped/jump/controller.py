@@ -1,4 +1,4 @@
-"""The virtual controller and the bookkeeping of one jump, compiled by numba, which importing this module imports.
+"""The controller and the bookkeeping of one jump, compiled by numba, which importing this module imports.
 
 ``control`` is called at the start of every step. Everything it knows about a jump besides positions and speeds is in
 one ``controller_record.RECORD``, which ``callback`` keeps in the user data of the simulation. Whatever calls it
@@ -11,7 +11,7 @@ from typing import Any
 from pareto_monoped.compute.compiled import compiled
 from pareto_monoped.design import GRAVITY_M_PER_S2, Floats
 from pareto_monoped.jump.controller_record import HIP, KNEE, TOUCH_M
-from pareto_monoped.jump.virtual_leg import held_pose, push, release, virtual_leg
+from pareto_monoped.jump.torques import held_pose, release, torques
 
 RUNNING, FLYING, APEX, NO_LIFT_OFF, SANK, DIVERGED, TIMEOUT = range(7)
 """``status``; a jump goes on through ``FLYING``."""
@@ -170,10 +170,7 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
             jump.quiet_periods += 1
         wanted, share = (0.0, 0.0), (gate, gate)
         if gate > 0.0:
-            if jump.until_m > 0.0:
-                wanted = push((hip, knee), foot, shank, speed, jump)
-            else:
-                wanted = virtual_leg(foot, shank, speed, jump)
+            wanted = torques((hip, knee), foot, shank, speed, jump)
             share = (gate, gate * release(knee, jump))
         elif jump.flight_stiffness_n_m_per_rad > 0.0:
             wanted, share = held_pose((hip, knee), speed, jump), (1.0, 1.0)

@@ -10,7 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from pareto_monoped.design import KNOT_NAMES
+
 HIP, KNEE = 0, 1
+VIRTUAL_LEG, OVER_TIME, OVER_LENGTH, PUSH, OWN = range(5)
+"""``law``: what the motors are told, see ``torques.torques``."""
 TOUCH_M = 1e-9  #: Clearance that still counts as touching, because of rounding in the start pose.
 MOST_DELAY = 8  #: Control periods that a command can be late: 3 ms (bus and driver) at 0.5 ms each, and two more.
 
@@ -48,8 +52,14 @@ RECORD = np.dtype(
         ("flight_stiffness_n_m_per_rad", _ONE),
         ("flight_damping_n_m_s_per_rad", _ONE),
         ("start_rad", _BOTH),
-        # A push that is replayed instead of the virtual leg (``virtual_leg.push``), if ``until_m`` is above 0: until
-        # the foot is that far below the hip. Pairs are forward, down of the foot, or hip, knee.
+        ("law", _ONE),
+        # A torque profile (``torques.between``): its variables, in the order of ``design.KNOT_NAMES``, where or when
+        # its first knot is, one over the way to the last one, how many knots it has, and whether it is smooth. An own
+        # law has its variables there, too, and the address of its function.
+        ("profile", (np.float64, (len(KNOT_NAMES),))),
+        *_each(_ONE, "first_knot", "per_profile", "knots", "cubic", "own_address"),
+        # The push (``torques.push``) until the foot is ``until_m`` below the hip, which is 0 for other laws. Pairs are
+        # forward, down of the foot, or hip, knee.
         *_each(_ONE, "until_m", "at_target", "joint_n_m_per_rad", "joint_n_m_s_per_rad"),
         *_each(_BOTH, "force_n", "force_n_per_m", "force_n_s_per_m", "foot_m", "foot_m_per_s"),
         *_each(_BOTH, "target_rad", "target_rad_per_s", "force_limit_n_m", "added_n_m"),
@@ -112,7 +122,7 @@ RECORD_NUMBERS = RECORD.itemsize // 8  #: Length of a record in MuJoCo's user da
 OBSERVED = {"position": 4, "velocity": 4, "directions": 4, "motor_torque_n_m": 2, "motor_rad": 2}
 """Fields that tell the course of a jump, read after every call of the controller, with their numbers."""
 
-_COMPILED = ("controller.py", "virtual_leg.py", "planar.py")
+_COMPILED = ("controller.py", "torques.py", "planar.py")
 
 
 def origin() -> int:

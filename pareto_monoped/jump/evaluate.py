@@ -9,15 +9,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.actuator.ratiomap import JointMaps, Maps, joint_maps
 from pareto_monoped.design import (
-    CONTROL,
+    ALL_NAMES,
     GRAVITY_M_PER_S2,
     LEAST,
     MOST,
-    NAMES,
     Floats,
-    columns,
     complete,
     complete_control,
+    control_of,
     nonsense,
 )
 from pareto_monoped.jump.calibration import Calibration
@@ -110,7 +109,7 @@ class Evaluator:
             robots = joined([built[k] for k in members])
             rows = np.concatenate([rows_of[k] for k in members])
             own = None if variations is None else take(variations, rows)
-            _jump(robots, columns(values[rows], CONTROL), self.calibration, self.workers, table, rows, own)
+            _jump(robots, control_of(values[rows]), self.calibration, self.workers, table, rows, own)
         for k, rows in rows_of.items():
             _add_safeties(values, self.actuator_maps[k], table, rows)
 
@@ -136,7 +135,7 @@ def evaluate_robots(robots: RobotArrays, control: Floats, calibration: Calibrati
 def _add_safeties(values: Floats, maps: JointMaps, table: "_Table", rows: NDArray[np.intp]) -> None:
     """Fill the measures of strength of ``rows`` from the loads of their jumps."""
     rows = rows[table.status[rows] == "ok"]
-    known = dict(zip(NAMES, values.T, strict=True)) | table.columns
+    known = dict(zip(ALL_NAMES, values.T, strict=False)) | table.columns
     loads = loads_of({name: known[name][rows] for name in LOAD_NAMES})
     for name, safety in safeties(strength_factors(values[rows], maps, loads)).items():
         table.columns[name][rows] = safety
@@ -145,10 +144,10 @@ def _add_safeties(values: Floats, maps: JointMaps, table: "_Table", rows: NDArra
 def _nonsense(values: Floats) -> dict[int, str]:
     """Return the rows of ``values`` that are not designs, each with the reason."""
     with np.errstate(invalid="ignore"):
-        wrong = ~((values >= LEAST) & (values <= MOST))
+        wrong = ~((values >= LEAST[: values.shape[1]]) & (values <= MOST))
     reasons: dict[int, str] = {}
     for i, column in np.argwhere(wrong).tolist():
-        reasons.setdefault(i, nonsense(NAMES[column], float(values[i, column])) or "")
+        reasons.setdefault(i, nonsense(ALL_NAMES[column], float(values[i, column])) or "")
     return reasons
 
 

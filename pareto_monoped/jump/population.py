@@ -7,7 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, PAPER_CONTROL, REST_LENGTH_M, Floats, complete_control
+from pareto_monoped.design import (
+    CONTROL,
+    GRAVITY_M_PER_S2,
+    KNOT_NAMES,
+    PAPER_CONTROL,
+    REST_LENGTH_M,
+    Floats,
+    complete_control,
+)
 from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
@@ -207,12 +215,13 @@ def first_records(robots: RobotArrays, control: Floats, calibration: Calibration
 
     for name in ("thigh_length_m", "shank_length_m", "foot_radius_m", "no_load_speed_rad_per_s"):
         records[name] = getattr(robots, name)
-    given = dict(zip(CONTROL, complete_control(control).T, strict=True))
+    given = dict(zip((*CONTROL, *KNOT_NAMES), complete_control(control).T, strict=True))
     for name in (*PAPER_CONTROL, "knee_release_rad"):
         records[name] = given[name]
     # A design that leaves the rest length at its default takes that of its calibration.
     free = given["rest_length_m"] != REST_LENGTH_M
     records["rest_length_m"] = np.where(free, given["rest_length_m"], calibration.controller.rest_length_m)
+    calibration.controller.law.fill(records, given, robots)
     whole = calibration.controller.weight == "robot"
     mass_kg = robots.body_mass_kg.sum(axis=1) if whole else robots.body_mass_kg[:, BODIES.index("base")]
     records["weight_n"] = calibration.controller.gravity_feed_forward * (mass_kg * GRAVITY_M_PER_S2)

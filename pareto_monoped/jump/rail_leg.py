@@ -89,7 +89,7 @@ class Control(Strict):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Push(Strict):
-    """One push from rest: the law of ``virtual_leg.push`` until the foot is ``until_m`` below the hip."""
+    """One push from rest: the law of ``torques.push`` until the foot is ``until_m`` below the hip."""
 
     #: crouch_m, until_m: distance of the foot below the hip at the start, and where the push ends
     crouch_m: Positive

@@ -9,6 +9,7 @@ import numpy as np
 from pareto_monoped.design import CONTROL, Floats
 from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump.calibration import Calibration, Joints, Simulation, Stand, load_calibration
+from pareto_monoped.jump.controller_record import PUSH
 from pareto_monoped.jump.engines import population_of
 from pareto_monoped.jump.gravity import left_m, rise_m
 from pareto_monoped.jump.model import StartPose
@@ -130,6 +131,7 @@ def _command(leg: RailLeg, push: Push) -> dict[str, float | tuple[float, float]]
     none = (0.0, 0.0)
     limit = push.force_limit_n_m or (leg.hip_drive.peak_torque_n_m, leg.knee_drive.peak_torque_n_m)
     fields: dict[str, float | tuple[float, float]] = {
+        "law": PUSH,
         "until_m": push.until_m,
         "at_target": float(push.jacobian == "target"),
         "joint_n_m_per_rad": push.joint_stiffness_n_m_per_rad,

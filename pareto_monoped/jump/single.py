@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from pareto_monoped.actuator.ratiomap import Maps
-from pareto_monoped.design import CONTROL, GRAVITY_M_PER_S2, Design, Floats, columns
+from pareto_monoped.design import GRAVITY_M_PER_S2, Design, Floats, control_of
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.controller_record import origin
 from pareto_monoped.jump.document import mjcf
@@ -54,7 +54,7 @@ def simulate(design: Design, maps: Maps, calibration: Calibration, *, trace: boo
     rows: dict[str, Floats] = {}
     if trace and evaluations.status[0] not in ("bad_input", "no_gearbox", "cannot_stand"):
         robots = robot_arrays(values, maps, calibration.mass)
-        rows = trace_of(robots, columns(values, CONTROL), calibration)
+        rows = trace_of(robots, control_of(values), calibration)
     return JumpResult(
         design=design,
         calibration=calibration.label,

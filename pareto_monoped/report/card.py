@@ -14,7 +14,7 @@ from pareto_monoped.analysis.choices import default_pick
 from pareto_monoped.analysis.sensitivity import importances
 from pareto_monoped.definition.algorithms import WeightedSettings
 from pareto_monoped.definition.variables import MOTOR_KEYS, Bounds
-from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES, PAPER_CASES, Variable
+from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES, PAPER_CASES, Variable, designs_of
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.jump.end_stops import end_stops
 from pareto_monoped.jump.gravity import least_of_all_j
@@ -185,19 +185,19 @@ def _body_masses_kg(data: StudyData, designs: pd.DataFrame) -> NDArray[np.float6
     """Return the masses of base, thigh and shank of n simulated designs, shape (n, 3)."""
     masses = np.zeros((len(designs), 3))
     for kit, rows in data.kit_rows(designs):
-        values = designs.iloc[rows][list(NAMES)].to_numpy(dtype=np.float64)
+        values = designs_of(designs.iloc[rows])
         masses[rows] = robot_arrays(values, kit, data.calibration.mass).body_mass_kg
     return masses
 
 
 def _floor_j(data: StudyData) -> list[float]:
     """Return the least energy of every design that jumped, at ``FLOOR_HEIGHTS_M``, rounded down."""
-    needed = data.trials[[name for name in (*NAMES, *MOTOR_KEYS) if name in data.trials]]
+    needed = data.trials[[name for name in (*data.study.names, *MOTOR_KEYS) if name in data.trials]]
     jumped = needed[data.trials["height_m"].notna()]
     least = np.full(len(FLOOR_HEIGHTS_M), np.inf)
     for kit, rows in data.kit_rows(jumped):
         for some in np.array_split(rows, len(rows) // MOST_ROWS + 1):
-            designs = jumped.iloc[some][list(NAMES)].to_numpy(dtype=np.float64)
+            designs = designs_of(jumped.iloc[some])
             robots = robot_arrays(designs, kit, data.calibration.mass)
             least = np.minimum(least, least_of_all_j(robots, data.calibration, np.array(FLOOR_HEIGHTS_M)))
     return (np.floor(1e4 * least) / 1e4).tolist() if np.isfinite(least).all() else []
@@ -214,7 +214,7 @@ def _with_those_pointed_out(
     rows = rows[~rows["trial"].isin(list(jumps))]
     for kit, places in data.kit_rows(rows):
         members = rows.iloc[places]
-        made = jumps_of(members[list(NAMES)].to_numpy(dtype=np.float64), kit, data.calibration, again.frames)
+        made = jumps_of(designs_of(members), kit, data.calibration, again.frames)
         jumps |= of_trials(members, made)
     return jumps
 

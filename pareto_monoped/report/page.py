@@ -17,7 +17,7 @@ import numpy as np
 from pareto_monoped import __version__
 from pareto_monoped.analysis.choices import WORDS
 from pareto_monoped.compute.chunks import cores
-from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, PAPER_CASES, VARIABLES, in_use
+from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, KNOTS, PAPER_CASES, VARIABLES, in_use
 from pareto_monoped.errors import StudyError
 from pareto_monoped.files import write_text
 from pareto_monoped.leg.dimensions import leg_dimensions
@@ -94,7 +94,7 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
                 kits[hip, knee] = Kit(motor=kit.label, hip=hip, knee=knee, leg=leg)
     labels = _labels(sources)
     used = {variable.name for source in sources for variable in in_use(source.data.trials)}
-    variables = [variable for variable in VARIABLES if variable.name in used]
+    variables = [variable for variable in (*VARIABLES, *KNOTS) if variable.name in used]
     goals = tuple(dict.fromkeys(name for source in sources for name in source.data.study.objectives.names))
     cards = []
     shown = rows_per_study([len(source.data.trials) for source in sources])
@@ -123,14 +123,16 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
             published_link_kg_per_m=PUBLISHED_LINK_KG_PER_M,
         ),
         variables=[asdict(variable) for variable in variables],
-        quantities=quantities_of(names_of([source.data for source in sources], [card.robust for card in cards])),
+        quantities=quantities_of(
+            names_of([source.data for source in sources], [card.robust for card in cards]), variables
+        ),
         axes=_axes(cards),
         published=[
             {
                 "name": c.name,
                 "height_m": c.height_m,
                 "energy_j": c.energy_j,
-                "design": {variable.name: getattr(c.design, variable.name) for variable in variables},
+                "design": {one.name: c.design.as_dict().get(one.name, one.default) for one in variables},
             }
             for c in PAPER_CASES.values()
         ],

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from pareto_monoped.design import VARIABLES
+from pareto_monoped.design import VARIABLES, Variable
 from pareto_monoped.measures import AUDIT_MEASURES, MEASURES, SCREEN_MEASURES, Measure, is_robust, measure
 from pareto_monoped.report.schema import Quantity
 
@@ -25,10 +25,13 @@ def _of(m: Measure) -> Quantity:
     )
 
 
-_VARIABLES = tuple(
-    Quantity(name=v.name, label=v.label, unit=v.shown_unit, decimals=v.decimals, scale=v.scale, group="variables")
-    for v in VARIABLES
-)
+def _of_variable(v: Variable) -> Quantity:
+    return Quantity(
+        name=v.name, label=v.label, unit=v.shown_unit, decimals=v.decimals, scale=v.scale, group="variables"
+    )
+
+
+_VARIABLES = tuple(map(_of_variable, VARIABLES))
 
 
 def _placed(table: Sequence[Measure]) -> tuple[str, ...]:
@@ -50,9 +53,10 @@ EVERY_TRIAL: tuple[str, ...] = ("mass_kg", "foot_clearance_m", "joule_heat_j")
 """Measures that the page has of every trial as plain numbers beside the objectives; the others are packed."""
 
 
-def quantities_of(robust: Sequence[str]) -> tuple[Quantity, ...]:
-    """``QUANTITIES``, and some measures under uncertainty and own functions by name."""
-    return (*QUANTITIES, *(_of(measure(name)) for name in robust))
+def quantities_of(robust: Sequence[str], variables: Sequence[Variable] = ()) -> tuple[Quantity, ...]:
+    """``QUANTITIES``, measures under uncertainty and own functions by name, and the knots among some variables."""
+    knots = (_of_variable(variable) for variable in variables if variable not in VARIABLES)
+    return (*QUANTITIES, *knots, *(_of(measure(name)) for name in robust))
 
 
 QUANTITIES: tuple[Quantity, ...] = (

@@ -8,7 +8,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from pareto_monoped.design import CONTROL, NAMES, PAPER_CASES, columns
+from pareto_monoped.design import PAPER_CASES, control_of, designs_of
+from pareto_monoped.jump.laws import PAPER_LAW
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.report.packing import number
 from pareto_monoped.report.schema import Case
@@ -54,11 +55,11 @@ def resimulate(
     jumps: dict[int, Recording] = {}
     for kit, places in data.kit_rows(rows):
         members = rows.iloc[places]
-        made = jumps_of(members[list(NAMES)].to_numpy(dtype=np.float64), kit, data.calibration, frames, workers)
+        made = jumps_of(designs_of(members), kit, data.calibration, frames, workers)
         jumps |= of_trials(members, made)
     numbers = rows["trial"].astype(int).tolist()
     heights = zip(numbers, rows["height_m"].tolist(), strict=True)
-    cases, case_jumps = paper_cases(data.case_kit, data.calibration)
+    cases, case_jumps = paper_cases(data.case_kit, data.calibration.under(PAPER_LAW))
     return Resimulation(
         jumps={trial: jumps[trial] for trial in numbers if trial in jumps},
         cases=cases,
@@ -105,7 +106,7 @@ def jumps_of(
 
     if len(designs) == 0:
         return []
-    robots, control = robot_arrays(designs, maps, calibration.mass), columns(designs, CONTROL)
+    robots, control = robot_arrays(designs, maps, calibration.mass), control_of(designs)
     return recordings(robots, control, calibration, frames, workers)
 
 

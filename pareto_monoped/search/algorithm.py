@@ -5,7 +5,7 @@ by position and a choice of motor as one more variable, whose values have no ord
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -71,6 +71,8 @@ class Space:
     gears: Mapping[str, tuple[Gear, ...]] = field(default_factory=dict)
     #: the coordinates that choose a motor, the last of ``names``; empty where every joint has one
     choices: tuple[MotorChoice, ...] = ()
+    #: returns points that a search begins with, shape (n, d); None: it begins anywhere
+    begin: Callable[[], Floats] | None = None
 
     def __repr__(self) -> str:
         """Return one line: what is varied, and for what."""

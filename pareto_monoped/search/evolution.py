@@ -1,7 +1,7 @@
 """Search with NSGA-II, SMS-EMOA or AGE-MOEA2 of pymoo."""
 
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from pymoo.core.repair import Repair
 from pymoo.core.termination import NoTermination
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
+from pymoo.operators.sampling.rnd import FloatRandomSampling
 
 from pareto_monoped.definition.algorithms import EvolutionSettings
 from pareto_monoped.search.algorithm import Algorithm, Floats, Proposal, Scores, Space
@@ -106,6 +107,18 @@ class _Snap(Repair):  # type: ignore[misc]  # pymoo has no types
         return self._space.snap(X)
 
 
+class _Begin(FloatRandomSampling):  # type: ignore[misc]  # pymoo has no types
+    """Begins with points of the space, and draws as many more as are asked for."""
+
+    def __init__(self, begin: Callable[[], Floats]) -> None:
+        super().__init__()
+        self._begin = begin
+
+    def _do(self, problem: Problem, n_samples: int, *more: object, **settings: object) -> Floats:
+        points: Floats = self._begin()[:n_samples]
+        return np.vstack((points, super()._do(problem, n_samples, *more, **settings)[len(points) :]))
+
+
 class _Unseen(DefaultDuplicateElimination):  # type: ignore[misc]  # pymoo has no types
     """Leaves out what is in the population already, as pymoo does, and what was ever asked for."""
 
@@ -137,6 +150,7 @@ def _algorithm(settings: EvolutionSettings, seed: int, space: Space, seen: Seen)
     kind = {"nsga2": NSGA2, "sms_emoa": SMSEMOA, "age_moea2": AGEMOEA2}[settings.name]
     return kind(
         pop_size=settings.population,
+        **({} if space.begin is None else {"sampling": _Begin(space.begin)}),
         crossover=crossover,
         mutation=mutation,
         repair=_Snap(space),

@@ -54,6 +54,10 @@ def make_algorithm(study: Study, coordinates: Coordinates | None = None, own: An
         case WeightedSettings():
             from pareto_monoped.search.weighted import WeightedSearch
 
-            start = where.values(PAPER_CASES["nominal"].design.replace(settings.start).as_array()[None])[0]
+            if where.space.begin is None:
+                start = where.values(PAPER_CASES["nominal"].design.replace(settings.start).as_array()[None])[0]
+            else:
+                begun = where.space.begin()
+                start = begun[len(begun) // 2]
             return WeightedSearch(where.space, settings, start, study.seed, study.reference_point)
     raise NotImplementedError(f"no algorithm for {settings!r}")

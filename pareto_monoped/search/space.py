@@ -7,8 +7,8 @@ a low ratio stays low when the motor changes. All other free variables are coord
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -58,6 +58,10 @@ class Coordinates(ABC):
     def limits(self, name: str) -> tuple[float, float]:
         """Return the least and the greatest value of a free variable in a stored design, whatever its motors."""
 
+    def beginning(self, begin: Callable[[], Floats]) -> "Coordinates":
+        """Return the same coordinates, of which a search begins with some designs; those of several motors do not."""
+        return self
+
     def motor_limits(self, name: str) -> tuple[str, dict[str, tuple[float, float]]] | None:
         """Return the choice that decides a variable's gearboxes, and the ratios' ends with each motor; else None."""
         return None
@@ -71,6 +75,7 @@ class KitCoordinates(Coordinates):
     fixed: Floats  #: a design with the fixed variables at their values, shape (number of variables,)
     #: for each free gear ratio that is searched as a list, its gearboxes by ascending real ratio
     gears: Mapping[str, tuple[Gear, ...]] = field(default_factory=dict)
+    begin: Callable[[], Floats] | None = None  #: designs that a search begins with, as ``Space.begin``
 
     @property
     def space(self) -> Space:
@@ -84,6 +89,7 @@ class KitCoordinates(Coordinates):
             upper=upper[free],
             objectives=self.study.objectives,
             gears=self.gears,
+            begin=None if self.begin is None else self._begun,
         )
 
     def designs(self, values: Floats) -> Floats:
@@ -118,9 +124,18 @@ class KitCoordinates(Coordinates):
         assert isinstance(bounds, Bounds)
         return bounds.lower, bounds.upper
 
+    def beginning(self, begin: Callable[[], Floats]) -> "KitCoordinates":
+        """Return the same coordinates, of which a search begins with some designs."""
+        return replace(self, begin=begin)
+
+    def _begun(self) -> Floats:
+        assert self.begin is not None
+        points = self.values(self.begin())
+        return np.clip(points, self.space.lower, self.space.upper)
+
     @property
     def _free(self) -> NDArray[np.bool_]:
-        return np.array([name in self.study.free for name in NAMES])
+        return np.array([name in self.study.free for name in self.study.names])
 
     @property
     def _ratios(self) -> dict[str, Floats]:
@@ -231,7 +246,7 @@ class MotorCoordinates(Coordinates):
         positions = np.array(values[:, : len(space.names) - len(space.choices)])
         for name in space.listed:
             positions[:, space.names.index(name)] = space.gear_of(name, values)
-        designs = np.empty((len(values), len(NAMES)))
+        designs = np.empty((len(values), len(self.study.names)))
         for k in np.unique(kits).tolist():
             designs[kits == k] = self.parts[k].designs(positions[kits == k])
         return designs

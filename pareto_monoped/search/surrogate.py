@@ -224,7 +224,9 @@ class SurrogateSearch(Algorithm):
         generator = np.random.default_rng([self._seed, self._generation])
         size = self._size
         standing = self._archive.standing()
-        if self._generation < self._settings.drawn_generations or len(standing.order) == 0:
+        if self._generation == 0 and self._space.begin is not None:
+            chosen = self._space.begin()[:size]
+        elif self._generation < self._settings.drawn_generations or len(standing.order) == 0:
             corners = (size - size // 2) // 2
             counts = (size // 2, size - size // 2 - corners, corners)
             parts = zip(counts, (0.0, *_ON_BOUND), strict=True)

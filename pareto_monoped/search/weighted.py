@@ -94,20 +94,24 @@ class WeightedSearch(Algorithm):
             self.tell(scores)
 
     def _fresh(self) -> Any:
-        import cma  # and with it Matplotlib: a report, which needs the cost only, would wait for them
-
         generator = np.random.default_rng([self._seed, self._run])
-        dimensions = len(self._start)
-        return cma.CMAEvolutionStrategy(
-            self._start,
-            self._settings.sigma,
-            {
-                "popsize": self._settings.population,
-                "bounds": [[0.0] * dimensions, [1.0] * dimensions],
-                # With these normal deviates and no seed, cma does not touch NumPy's global generator.
-                "randn": lambda *shape: generator.standard_normal(shape),
-                "seed": np.nan,
-                "verbose": -9,
-                "verb_log": 0,
-            },
-        )
+        return cma_es(self._start, self._settings.sigma, self._settings.population, generator)
+
+
+def cma_es(start: Floats, sigma: float, population: int, generator: np.random.Generator) -> Any:
+    """Return Hansen's CMA-ES in the unit cube around ``start``, shape (d,), with deviates of the generator alone."""
+    import cma  # and with it Matplotlib: a report, which needs the cost only, would wait for them
+
+    return cma.CMAEvolutionStrategy(
+        start,
+        sigma,
+        {
+            "popsize": population,
+            "bounds": [[0.0] * len(start), [1.0] * len(start)],
+            # With these normal deviates and no seed, cma does not touch NumPy's global generator.
+            "randn": lambda *shape: generator.standard_normal(shape),
+            "seed": np.nan,
+            "verbose": -9,
+            "verb_log": 0,
+        },
+    )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.design import DEFAULTS, PAPER_NAMES, VARIABLES
+from pareto_monoped.design import ALL_NAMES, KNOTS, PAPER_NAMES, VARIABLES
 from pareto_monoped.measures import MEASURES, measure
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 
@@ -32,8 +32,8 @@ class Column:
 
 
 def _variable(index: int) -> Column:
-    variable = VARIABLES[index]
-    sql = "REAL" if variable.default is None else f"REAL NOT NULL DEFAULT {DEFAULTS[variable.name]!r}"
+    variable = (*VARIABLES, *KNOTS)[index]
+    sql = "REAL" if variable.default is None else f"REAL NOT NULL DEFAULT {variable.default!r}"
     return Column(variable.name, sql, "float64", variable.meaning, lambda generation: generation.designs[:, index])
 
 
@@ -77,9 +77,10 @@ COLUMNS: tuple[Column, ...] = (*_IDENTITY, *_JUDGEMENT, *_VARIABLES, _MOTOR, *_M
 
 
 def columns_of(study: "Study") -> tuple[Column, ...]:
-    """Return all columns and those of the measures under uncertainty and own functions that a study asks for."""
+    """Return all columns and those of the knots, measures under uncertainty and own functions of a study."""
     asked = (*study.robust_names, *study.own_names)
-    return (*COLUMNS, *(_measure(name, measure(name).meaning) for name in asked))
+    knots = (_variable(ALL_NAMES.index(one.name)) for one in study.controller.variables if one in KNOTS)
+    return (*COLUMNS, *knots, *(_measure(name, measure(name).meaning) for name in asked))
 
 
 def listed(names: Iterable[str]) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from pareto_monoped.definition.study import Study, study_from_dict
-from pareto_monoped.design import VARIABLES, Variable, in_use
+from pareto_monoped.design import KNOTS, VARIABLES, Variable, in_use
 from pareto_monoped.storage.base import undamaged
 from pareto_monoped.storage.connection import Connection
 from pareto_monoped.storage.kept_front import KeptFront, checked_front, foreign_count
@@ -82,7 +82,9 @@ def _kept(connection: Connection, db: StudyPlace) -> StudyFront:
     trials = trials[trials["trial"].isin(kept.numbers)]
     named = with_agility(with_motors(trials, study, meta, db))
     front = named.sort_values(study.objectives.names[0], kind="stable", ignore_index=True)
-    used = tuple(variable for variable in VARIABLES if variable.default is None or variable.name in kept.used)
+    used = tuple(
+        variable for variable in (*VARIABLES, *KNOTS) if variable.default is None or variable.name in kept.used
+    )
     return StudyFront(
         db=db,
         study=study,

@@ -1,16 +1,24 @@
 """At most one writer per study file: a lock that ends with its process; files that cannot be a study."""
 
 import errno
-import fcntl
 import os
 import stat
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
+
+try:
+    import fcntl
+except ImportError:  # on Windows
+    fcntl: Any = None  # type: ignore[no-redef]  # mypy reads it as a module
 
 from pareto_monoped.errors import DatabaseError, DiskError, LostTrialsError, OutputError
 from pareto_monoped.files import cure_of, is_failure
 from pareto_monoped.storage.base import BY_NAME, StudyLock
+
+# Windows has the last alone, which keeps line ends as they are.
+_SAFELY = sum(getattr(os, name, 0) for name in ("O_CLOEXEC", "O_NOFOLLOW", "O_NONBLOCK", "O_BINARY"))
 
 
 def inaccessible(path: Path, error: OSError) -> DatabaseError | DiskError:
@@ -58,7 +66,7 @@ class Lock(StudyLock):
         """Note that so many links of the running hash are safe; what survives a kill tells if they get lost."""
         self.settled = True
         try:
-            os.pwrite(self._descriptor, _content(links), 0)
+            _write(self._descriptor, _content(links))
         except OSError as error:
             raise inaccessible(self._path, error) from None
 
@@ -66,6 +74,44 @@ class Lock(StudyLock):
 def _content(links: int) -> bytes:
     # Always of the same length, so that one write replaces the other.
     return f"{os.getpid():<10}\n{links:<10}\n".encode("ascii")
+
+
+def _write(descriptor: int, content: bytes) -> None:
+    os.lseek(descriptor, 0, os.SEEK_SET)  # Windows has no pwrite; nobody else uses this descriptor
+    os.write(descriptor, content)
+
+
+def _claim(descriptor: int, path: Path, *, shared: bool = False) -> Callable[[], None]:
+    """Lock an open lock file until it is closed; return what must be called after that.
+
+    Without ``fcntl``, SQLite locks a second, empty file: Windows does not let a locked file be read, but who is refused
+    reads who holds it.
+
+    Raises:
+        BlockingIOError: another process, or another lock of this one, holds it.
+    """
+    if fcntl is not None:
+        fcntl.flock(descriptor, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+        return lambda: None
+    import sqlite3
+
+    guard = path.with_name(f"{path.name}-guard")
+    if shared and not guard.exists():
+        return lambda: None
+    connection = sqlite3.connect(guard, timeout=0.0, isolation_level=None)
+    try:
+        connection.execute("SELECT * FROM sqlite_master" if shared else "BEGIN EXCLUSIVE")
+    except sqlite3.OperationalError:
+        connection.close()
+        raise BlockingIOError from None
+
+    def release() -> None:
+        connection.close()
+        if not shared:
+            with suppress(OSError):  # another process has it by now; Windows deletes no open file
+                guard.unlink(missing_ok=True)
+
+    return release
 
 
 @contextmanager
@@ -84,7 +130,7 @@ def locked(db: Path) -> Iterator[Lock]:
     while True:
         try:
             # A link of that name must not lead to a file that the lock would overwrite.
-            descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK, 0o666)
+            descriptor = os.open(path, os.O_RDWR | os.O_CREAT | _SAFELY, 0o666)
         except OSError as error:
             if path.is_symlink() or path.is_dir():
                 raise _in_the_way(path) from None
@@ -98,9 +144,10 @@ def locked(db: Path) -> Iterator[Lock]:
                 f"study database {str(db)!r}: its folder cannot be written to ({error.strerror}); "
                 f"give a database file in a writable folder {BY_NAME}"
             ) from None
+        lock, release = None, None
         try:
             try:
-                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                release = _claim(descriptor, path)
             except BlockingIOError:
                 raise DatabaseError(
                     f"study database {str(db)!r}: is being run by process {_words(descriptor)[0]}; wait for it, stop "
@@ -118,7 +165,7 @@ def locked(db: Path) -> Iterator[Lock]:
             before = int(words[1]) if len(words) > 1 else 0
             try:
                 os.ftruncate(descriptor, 0)
-                os.pwrite(descriptor, _content(before), 0)
+                _write(descriptor, _content(before))
             except OSError as error:
                 path.unlink(missing_ok=True)
                 raise inaccessible(db, error) from None
@@ -133,6 +180,11 @@ def locked(db: Path) -> Iterator[Lock]:
             return
         finally:
             os.close(descriptor)
+            if fcntl is None and lock is not None and lock.settled:
+                with suppress(OSError):  # Windows deletes no open file
+                    path.unlink(missing_ok=True)
+            if release is not None:
+                release()
 
 
 def _in_the_way(path: Path) -> OutputError:
@@ -143,18 +195,20 @@ def _in_the_way(path: Path) -> OutputError:
 
 def _words(descriptor: int) -> list[str]:
     """Return the words of a lock file: process id (``unknown`` if it is no number), and how many links are safe."""
-    words = os.pread(descriptor, 64, 0).decode("ascii", "replace").split()
+    os.lseek(descriptor, 0, os.SEEK_SET)
+    words = os.read(descriptor, 64).decode("ascii", "replace").split()
     return words if words and words[0].isdigit() else ["unknown", *words]
 
 
 def holder(db: Path) -> int | None:
     """Return the process id of the run that holds a file, or None."""
+    path = _lock_path(db)
     try:
-        descriptor = os.open(_lock_path(db), os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK)
+        descriptor = os.open(path, os.O_RDONLY | _SAFELY)
     except OSError:
         return None
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        _claim(descriptor, path, shared=True)()
     except BlockingIOError:
         word = _words(descriptor)[0]
         return int(word) if word.isdigit() else None

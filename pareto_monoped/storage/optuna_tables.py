@@ -7,7 +7,7 @@ from datetime import UTC
 from typing import Any
 
 from pareto_monoped.definition.study import Study
-from pareto_monoped.design import NAMES
+from pareto_monoped.design import ALL_NAMES
 from pareto_monoped.search.scoring import values_of
 from pareto_monoped.search.space import Coordinates
 from pareto_monoped.storage.base import Storage
@@ -135,7 +135,7 @@ class OptunaTables:
         self._storage = storage
         self._study_id = study_id
         self._objectives = study.objectives
-        self._free = [i for i, name in enumerate(NAMES) if name in study.free]
+        self._free = [i for i, name in enumerate(study.names) if name in study.free]
         limits = {name: coordinates.limits(name) for name in study.free}
         # Optuna stores them with each parameter of each trial, half of a database; it reads this shorter form, too
         # (optuna.distributions.json_to_distribution).
@@ -203,7 +203,7 @@ class OptunaTables:
 
     def _parameter_rows(self, generation: Generation, ids: Sequence[int]) -> list[tuple[Any, ...]]:
         """Return rows of the table of parameters, those of one trial after the other; motors by their positions."""
-        names = [*(NAMES[i] for i in self._free), *self._motors]
+        names = [*(ALL_NAMES[i] for i in self._free), *self._motors]
         columns = generation.designs[:, self._free].T.tolist()
         columns += [[float(motors.index(name)) for name in generation.motors[n]] for n, motors in self._motors.items()]
         pairs = [(name, self._distributions[name]) for name in names]
@@ -216,7 +216,7 @@ class OptunaTables:
     def _parameters(self, generation: Generation, k: int) -> dict[str, Any]:
         """Return the free variables of trial ``k``, and its motors by name."""
         row = generation.designs[k].tolist()
-        values: dict[str, Any] = {NAMES[i]: row[i] for i in self._free}
+        values: dict[str, Any] = {ALL_NAMES[i]: row[i] for i in self._free}
         return values | {choice: generation.motors[choice][k] for choice in self._motors}
 
     def add_by_optuna(self, generation: Generation) -> None:

@@ -8,7 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.ratiomap import JointMaps
-from pareto_monoped.design import NAMES
+from pareto_monoped.design import designs_of
 from pareto_monoped.storage.place import StudyPlace
 from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.storage.store import Store
@@ -75,8 +75,7 @@ def audit_trials(data: StudyData, trials: pd.DataFrame, store: Store, simulator:
 
 
 def _designs(rows: pd.DataFrame) -> NDArray[np.float64]:
-    values: NDArray[np.float64] = rows[list(NAMES)].to_numpy(dtype=np.float64)
-    return values
+    return designs_of(rows)
 
 
 def _known(rows: pd.DataFrame) -> "Jumps":

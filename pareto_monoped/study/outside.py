@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.definition.study import Study
-from pareto_monoped.design import NAMES
+from pareto_monoped.design import ALL_NAMES
 from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.search.algorithm import Floats, Space
@@ -88,7 +88,7 @@ class JumpFunction:
         evaluations = self._evaluate(designs, where.kits(where.motors_of(points)))
         judgement = judge(evaluations, self._study.constraints, self._study.objectives)
         known = scores(evaluations, judgement, self._study.objectives)
-        table = Jumps(dict(zip(NAMES, designs.T, strict=True)) | evaluations.as_columns())
+        table = Jumps(dict(zip(ALL_NAMES, designs.T, strict=False)) | evaluations.as_columns())
         failed = judgement.state == "failed"
         own = [np.where(failed, 0.0, called(one, table, failed)) for one in self._own]
         limits = [np.where(failed, FAILED_VIOLATION, called(one, table, failed)) for one in self._own_limits]
@@ -148,7 +148,7 @@ class OptunaObjective:
         for name, missed in zip(self._jump.constraint_names, judged.constraints[0].tolist(), strict=True):
             trial.set_constraint(name, missed)
         trial.set_user_attr("status", str(table["status"][0]))
-        for name in (*NAMES, *MEASURE_NAMES):
+        for name in (one for one in (*ALL_NAMES, *MEASURE_NAMES) if one in table):
             value = float(table[name][0])
             trial.set_user_attr(name, value if np.isfinite(value) else None)
         if judged.failed[0]:

@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from pareto_monoped.design import NAMES, complete
+from pareto_monoped.design import ALL_NAMES, complete, designs_of
 from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import Evaluations
@@ -72,7 +72,7 @@ def with_functions(evaluate: Callable[..., Evaluations], functions: Functions) -
         jumps = evaluate(designs, *motors)
         columns = jumps.as_columns()
         table = Jumps({name: columns[name] for name in MEASURE_NAMES})
-        table |= dict(zip(NAMES, np.atleast_2d(complete(designs)).T, strict=True))
+        table |= dict(zip(ALL_NAMES, np.atleast_2d(complete(designs)).T, strict=False))
         failed = ~jumps.ok
         own = {name: np.where(failed, np.nan, called(function, table, failed)) for name, function in functions.items()}
         for name in [*unchecked] if np.count_nonzero(~failed) > 1 else []:
@@ -191,7 +191,8 @@ def refuse_other_functions(trials: pd.DataFrame, functions: Functions, source: s
     """Refuse functions that give other values than those stored, in some trials from the first to the last."""
     jumped = trials[trials["status"] == "ok"]
     rows = jumped.iloc[np.unique(np.linspace(0, len(jumped) - 1, min(_CHECKED, len(jumped))).astype(int))]
-    table = Jumps({name: rows[name].to_numpy(dtype=np.float64) for name in (*NAMES, *MEASURE_NAMES)})
+    table = Jumps({name: rows[name].to_numpy(dtype=np.float64) for name in MEASURE_NAMES})
+    table |= dict(zip(ALL_NAMES, designs_of(rows).T, strict=False))
     for name, function in functions.items() if len(rows) else ():
         now = called(function, table, np.zeros(len(rows), dtype=bool))
         stored = rows[name].to_numpy(dtype=np.float64)

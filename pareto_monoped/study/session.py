@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.definition.study import Study
-from pareto_monoped.design import NAMES
+from pareto_monoped.design import designs_of
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.pareto.front import AtHeight, GrowingFront, best_at_height
 from pareto_monoped.pareto.objectives import hypervolume
@@ -31,7 +31,8 @@ from pareto_monoped.storage.reader import StudyData
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.simulator import Evaluate
 
-_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+_HANGUP = getattr(signal, "SIGHUP", None)  # Windows has none
+_SIGNALS = [number for number in (signal.SIGINT, signal.SIGTERM, _HANGUP) if number is not None]
 
 
 class Interrupt:
@@ -48,7 +49,7 @@ class Interrupt:
     def __enter__(self) -> "Interrupt":
         if self._main:
             # What began with SIGHUP ignored (nohup) shall outlive its terminal.
-            numbers = [n for n in _SIGNALS if n != signal.SIGHUP or signal.getsignal(n) is not signal.SIG_IGN]
+            numbers = [n for n in _SIGNALS if n != _HANGUP or signal.getsignal(n) is not signal.SIG_IGN]
             self._before = {number: signal.signal(number, self._first) for number in numbers}
         return self
 
@@ -76,6 +77,15 @@ class Progress:
     hypervolume: float  #: of the front so far, in the product of the objectives' units
     #: What the designs that reach ``HEADLINE_HEIGHT_M`` cost; None for objectives without a height
     at_height: AtHeight | None
+
+    def text(self) -> str:
+        """Return it in words, as a bar shows it."""
+        headline = f", {self.at_height.text()}" if self.at_height else ""
+        minutes, seconds = divmod(round(self.seconds_left), 60)
+        return (
+            f"{self.evaluations}/{self.budget}, {self.per_second:.0f}/s, {minutes}:{seconds:02d} left, "
+            f"hypervolume {self.hypervolume:.2f}{headline}"
+        )
 
 
 class Session:
@@ -239,7 +249,7 @@ def _rows(data: StudyData, first: int, end: int) -> tuple[NDArray[np.float64], M
         violation=rows["violation"].to_numpy(),
         constraints=missed(study.constraints, measures, (rows["state"] == "failed").to_numpy()),
     )
-    return rows[list(NAMES)].to_numpy(dtype=np.float64), motors, known
+    return designs_of(rows), motors, known
 
 
 def _history(data: StudyData, coordinates: Coordinates) -> Iterator[tuple[NDArray[np.float64], Scores]]:

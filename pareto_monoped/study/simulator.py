@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,14 +12,33 @@ import numpy as np
 from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.motors import load_motor, motor_source, motor_values
 from pareto_monoped.actuator.search import map_of
+from pareto_monoped.definition.algorithms import DEFAULT_ALGORITHM
 from pareto_monoped.definition.study import Study
-from pareto_monoped.design import LOWER, PAPER_CASES, UPPER, complete
+from pareto_monoped.definition.variables import Bounds
+from pareto_monoped.design import (
+    ALL_DEFAULTS,
+    LOWER,
+    NAMES,
+    PAPER_CASES,
+    PAPER_CONTROL,
+    UPPER,
+    VARIABLES,
+    Floats,
+    complete,
+    control_of,
+)
 from pareto_monoped.errors import CalibrationError, StudyError, complaint
 from pareto_monoped.jump.calibration import Calibration, calibration_values, load_calibration
 from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION
+from pareto_monoped.jump.engines import told_profiles
 from pareto_monoped.jump.evaluate import Evaluations, Evaluator
+from pareto_monoped.jump.laws import OF_VIRTUAL_LEG, PAPER_LAW, Profile
 from pareto_monoped.jump.shared import evaluator_of
 from pareto_monoped.leg.thigh_outline import require_leg
+from pareto_monoped.pareto.front import front_mask
+from pareto_monoped.robot.population import robot_arrays
+from pareto_monoped.search.registry import make_algorithm
+from pareto_monoped.search.scoring import judge, scores
 from pareto_monoped.search.space import Coordinates, kit_maps, searched_coordinates
 from pareto_monoped.storage.meta import motor_keys
 from pareto_monoped.storage.reader import StudyData
@@ -48,7 +68,10 @@ class Simulator:
 
     def coordinates(self, study: Study) -> Coordinates:
         """Return what an algorithm searches in ``study``: lists of these motors' gearboxes where the study has them."""
-        return searched_coordinates(study, self.evaluator.actuator_maps)
+        found = searched_coordinates(study, self.evaluator.actuator_maps)
+        if study.controller == PAPER_LAW:
+            return found
+        return found.beginning(partial(_begun, study, self.evaluator))
 
     def probe(self) -> list[list[float | None]]:
         """Return height and energy of the paper's four designs and four fixed ones, with each kit of motors.
@@ -61,6 +84,45 @@ class Simulator:
         result = self.evaluator(np.tile(eight, (count, 1)), np.repeat(np.arange(count), len(eight)))
         pairs = np.column_stack((result.height_m, result.energy_j))
         return [[value if np.isfinite(value) else None for value in row] for row in pairs.tolist()]
+
+
+_BEFORE, _BEGUN = 800, 40
+"""Jumps under the virtual leg before a study with another law begins, and designs that it begins with. Our own choice:
+a tenth of the main job's jumps, and a generation."""
+
+
+def _begun(study: Study, evaluator: Evaluator) -> Floats:
+    """Return designs that begin with the torques which the virtual leg tells the motors, best first.
+
+    They are those of a short search of the same study under the virtual leg, whose trials are not stored: its front,
+    evenly spread, then what violates its limits least.
+    """
+    assert isinstance(study.controller, Profile)
+    kept = {name: value for name, value in study.variables.items() if name in NAMES}
+    gains = {v.name: Bounds(lower=v.lower, upper=v.upper) for v in VARIABLES if v.name in PAPER_CONTROL}
+    first = replace(study, controller=PAPER_LAW, algorithm=DEFAULT_ALGORITHM, variables=kept | gains)
+    maps, model = evaluator.actuator_maps[0], evaluator.calibration.under(PAPER_LAW)
+    virtual, where = Evaluator(maps, model, evaluator.workers), searched_coordinates(first, [maps])
+    algorithm, found = make_algorithm(first, where), np.zeros((0, len(NAMES) + 1 + len(first.objectives.names)))
+    while len(found) < _BEFORE and (proposal := algorithm.ask()) is not None:
+        designs = where.designs(proposal.values)
+        jumps = virtual(designs)
+        judged = scores(jumps, judge(jumps, first.constraints, first.objectives), first.objectives)
+        algorithm.tell(judged)
+        found = np.vstack((found, np.column_stack((designs, judged.violation, judged.values))[jumps.ok]))
+    violation, values = found[:, len(NAMES)], found[:, len(NAMES) + 1 :]
+    front = np.flatnonzero(front_mask(values, first.objectives, violation == 0.0))
+    front = front[np.argsort(values[front, 0], kind="stable")]
+    spread = front[np.unique(np.linspace(0, len(front) - 1, min(_BEGUN, len(front))).astype(int))]
+    others = np.setdiff1d(np.argsort(violation, kind="stable")[: 2 * _BEGUN], front)
+    rows = np.concatenate((spread, others))[:_BEGUN].astype(int)
+    designs = found[rows, : len(NAMES)]
+    robots = robot_arrays(designs, maps, model.mass)
+    profiles = told_profiles(robots, control_of(designs), model, study.controller)
+    designs[:, [NAMES.index(name) for name in OF_VIRTUAL_LEG]] = [
+        ALL_DEFAULTS.get(name, 0.0) for name in OF_VIRTUAL_LEG
+    ]
+    return np.hstack((designs, profiles))
 
 
 def evaluation_of(study: Study, evaluator: Evaluator) -> Evaluate:
@@ -130,6 +192,8 @@ def _simulator(
         raise StudyError(complaint("engine", study.engine, allowed, "drop it, or choose another calibration"))
     if study.engine is not None:
         calibration = calibration.by(study.engine)
+    if study.controller != PAPER_LAW:
+        calibration = calibration.under(study.controller)
     names = [motor.name for motor in motors]
     for name in names:
         if names.count(name) > 1:

@@ -17,6 +17,9 @@ from pareto_monoped.geometry.roles import SCREWS, Role
 from pareto_monoped.geometry.shapes import Pattern
 from tests.actuator.fit import clashes, overlaps_within, pieces, rings
 
+EVERY_TIME = ("VT8020", "MAD_M6C12", "U12")
+"""Motors whose parts are tried every time: the default, the smallest and the largest."""
+
 
 @cache
 def bests(name, rules="paper"):
@@ -31,7 +34,9 @@ def bests(name, rules="paper"):
 
 
 @pytest.mark.parametrize("rules", RULE_SETS)
-@pytest.mark.parametrize("name", motor_names())
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name in EVERY_TIME else pytest.mark.long) for name in motor_names()]
+)
 def test_no_parts_clash_and_every_hole_has_metal_around_it(name, rules):
     count = 0
     for actuator in bests(name, rules):
@@ -192,7 +197,11 @@ def test_a_motor_without_stator_data_has_only_the_outer_family():
 
 
 @pytest.mark.parametrize(
-    ("outer", "bore", "stator", "length"), [(60, 40, 54, 25), (120, 80, 108, 30), (200, 150, 180, 40)]
+    ("outer", "bore", "stator", "length"),
+    [
+        (60, 40, 54, 25),
+        *(pytest.param(*sizes, marks=pytest.mark.long) for sizes in ((120, 80, 108, 30), (200, 150, 180, 40))),
+    ],
 )
 def test_motors_of_other_sizes_fit_together_too(outer, bore, stator, length):
     motor = Motor(

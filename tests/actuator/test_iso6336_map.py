@@ -145,8 +145,8 @@ def agree(got, best):
     ("name", "family", "tenths"),
     [
         ("VT8020", "ISSPG", 40),
-        ("VT8020", "ESSPG", 54),
-        ("VT8020", "ESSPG", 60),
+        pytest.param("VT8020", "ESSPG", 54, marks=pytest.mark.long),
+        pytest.param("VT8020", "ESSPG", 60, marks=pytest.mark.long),
         ("VT8020", "ESSPG", 79),
         ("U8", "ISSPG", 45),
     ],

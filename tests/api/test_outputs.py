@@ -30,6 +30,15 @@ def test_a_design_is_exported_as_by_the_command_line(tmp_path):
         pm.export(C.replace({"stiffness_n_per_m": 9.0}), tmp_path / "api", formats=["mjcf"])
 
 
+def test_a_film_of_a_jump_is_written_by_its_ending(tmp_path):
+    from PIL import Image
+
+    with Image.open(pm.film(C, tmp_path / "c.gif", slower=1.0)) as drawn:
+        assert drawn.n_frames > 5
+    with pytest.raises(InputError, match=r"c\.avi': must be a file ending in"):
+        pm.film(C, tmp_path / "c.avi")
+
+
 @pytest.mark.usefixtures("unchecked")
 def test_a_trial_is_exported_with_what_its_study_stores(stored, tmp_path):
     picked = stored.pick("knee")
@@ -37,6 +46,8 @@ def test_a_trial_is_exported_with_what_its_study_stores(stored, tmp_path):
     assert record["jumps"]["searched"]["height_m"] == pytest.approx(picked.row["height_m"], rel=1e-9)  # by MuJoCo
     again = pm.export_trial(stored.path, picked.trial, tmp_path / "again", formats=["mjcf"])
     assert again["searched"] == record["searched"]
+    assert repr(again) == f"Export({str(tmp_path / 'again')!r}, {len(again.files)} files, {again['mass_kg']:.2f} kg)"
+    assert all(path.is_file() for path in again.files)
     with pytest.raises(SelectionError, match="trial = 9999"):
         pm.export_trial(stored, 9999, tmp_path / "none")
     assert not (tmp_path / "none").exists()

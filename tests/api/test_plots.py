@@ -49,3 +49,28 @@ def test_a_jump_has_a_panel_for_heights_angles_and_torques():
     assert [one.get_ylabel() for one in axes] == ["height (m)", "angle (rad)", "motor torque (N m)"]
     with pytest.raises(InputError, match="lacks hip_rad"):
         pm.plot_jump(steps.drop(columns="hip_rad"))
+
+
+def test_the_mouse_names_trial_variables_and_measures(stored):
+    front, dots = stored.front(), pm.plot_front(stored).data[-1]
+    assert dots.customdata[:, 0].tolist() == front["trial"].tolist()
+    lines = dots.hovertemplate.split("<br>")
+    assert lines[0] == "trial: %{customdata[0]}"
+    knee = next(k for k, line in enumerate(lines) if line.startswith("knee ratio: "))
+    np.testing.assert_allclose(dots.customdata[:, knee].astype(float), front["knee_ratio"], rtol=1e-4)
+    assert any(line.startswith("height (m): ") for line in lines)
+
+
+def test_a_colour_shows_a_measure_a_variable_or_the_third_objective(stored, tmp_path):
+    dots = pm.plot_front(stored, color="thigh_length_m").data[-1]
+    np.testing.assert_allclose(dots.marker.color, 1000.0 * stored.front()["thigh_length_m"])
+    assert dots.marker.colorbar.title.text == "thigh length (mm)"
+    three = pm.Study.define(
+        name="t", evaluations=60, algorithm="random", audit=False, objectives=["height_m", "energy_j", "mass_kg"]
+    )
+    other = pm.run(three, tmp_path / "t.db")
+    np.testing.assert_array_equal(pm.plot_front(other).data[-1].marker.color, other.front()["mass_kg"])
+    _, bar = pm.plot_front(other, backend="matplotlib").axes
+    assert bar.get_ylabel() == "mass (kg)"
+    with pytest.raises(InputError, match="color = 'mass'"):
+        pm.plot_front(stored, color="mass")

@@ -16,6 +16,10 @@ from pareto_monoped.errors import ParetoMonopedError
 
 ROOT = Path(__file__).parents[2]
 FUNCTIONS = [name for name in pm.__all__ if callable(getattr(pm, name))]
+RETURNED = {
+    "Actuator", "ActuatorMap", "Alternative", "Measure", "PaperCase", "Progress", "Robot", "Variable", "Verification",
+}  # fmt: skip
+"""Classes that are public for annotations: nobody makes their objects but the functions that return them."""
 
 
 @pytest.fixture(scope="module")
@@ -31,10 +35,13 @@ def test_one_jump_loads_no_storage_and_no_search():
     code = (
         "import sys, pareto_monoped as pm; pm.simulate(pm.PAPER_CASES['C'].design)\n"
         "names = ('sqlite3', 'optuna', 'pymoo', 'pareto_monoped.study.run', 'pareto_monoped.storage.store')\n"
-        "print([name for name in names if name in sys.modules])"
+        "print([name for name in names if name in sys.modules])\n"
+        "print(sum(name.partition('.')[0] == 'pareto_monoped' for name in sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    heavy, ours = done.stdout.splitlines()
+    assert heavy == "[]"
+    assert int(ours) <= 120
 
 
 def test_importing_the_package_imports_nothing_else():
@@ -79,7 +86,8 @@ def test_every_function_says_what_it_takes_gives_and_raises(name):
         described = text.partition("Args:")[2].partition("Raises:")[0]
         for parameter in inspect.signature(thing).parameters:
             assert parameter in described or len(inspect.signature(thing).parameters) == 1, parameter
-    assert "Example:" in text
+    error = isinstance(thing, type) and issubclass(thing, Exception)
+    assert "Example:" in text or name in RETURNED or error
 
 
 @pytest.mark.parametrize("name", [name for name in pm.__all__ if not callable(getattr(pm, name)) and name.isupper()])

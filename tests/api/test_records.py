@@ -108,9 +108,27 @@ def test_no_public_record_floods_a_notebook(db):
     made = [make(db) for make, _ in MADE.values()]
     made += [stored.study, stored.design(0), pm.load_motor("U8"), pm.load_calibration(), pm.PAPER_CASES["C"]]
     made += [pm.MonopedProblem(stored.study), pm.OptunaObjective(stored.study), *stored.alternatives(0)]
+    made += [pm.VARIABLES[0], pm.MEASURES[0], pm.verify(db), pm.Export("leg", {"mass_kg": 4.7, "files": ["a"] * 1000})]
+    pm.run(pm.Study.define(**STUDY), db.with_name("again.db"), callback=lambda now: made.append(now))
     public = {value for name in pm.__all__ if isinstance(value := getattr(pm, name), type)}
-    assert public - {type(one) for one in made} == {pm.ParetoMonopedError}
+    errors = {one for one in public if issubclass(one, pm.ParetoMonopedError)}
+    assert public - {type(one) for one in made} == errors | {pm.OwnLaw}  # which are base classes
     assert [type(one).__name__ for one in made if len(repr(one)) > 1500] == []
+
+
+def test_notebooks_show_a_short_table(db):
+    """What is shown is what the objects say, and a name that is HTML is text."""
+    stored = pm.load_study(db)
+    picked = stored.pick("knee")
+    shown = stored._repr_html_()
+    assert f"{stored.hypervolume:.4f}" in shown
+    assert f"<td style='text-align:left'>{len(stored.front())} designs</td>" in shown
+    assert f"{1000.0 * picked.design.thigh_length_m:.1f} mm" in picked._repr_html_()
+    assert f"{picked.row.height_m:.3f} m" in picked._repr_html_()
+    jump = {"height_m": 0.9, "energy_j": 26.5}
+    made = pm.Export("<b>leg", {"mass_kg": 4.7, "files": ["design.json"], "jumps": {"as_built": jump}})
+    assert "0.9000 m, 26.500 J" in made._repr_html_()
+    assert "&lt;b&gt;leg" in made._repr_html_()
 
 
 def test_stored_studies_and_picks_may_be_keys_and_list_items(db):

@@ -142,3 +142,32 @@ def test_messages_show_no_address(tmp_path):
     study = pm.Study.define(**SMALL, evaluations=40)
     with pytest.raises(pm.ParetoMonopedError, match=r"^objectives = <function \S*<lambda>>: must be a list"):
         pm.run(study, tmp_path / "s.db", objectives=lambda jumps: jumps["mass_kg"])
+
+
+def test_a_bar_is_shown_where_it_is_wanted(file, tmp_path, capsys):
+    pm.run(file, tmp_path / "silent.db", evaluations=40)
+    assert capsys.readouterr().err == ""
+    seen = []
+    pm.run(file, tmp_path / "shown.db", evaluations=40, progress=True, callback=seen.append)
+    assert "40/40" in capsys.readouterr().err
+    assert [one.evaluations for one in seen] == [20, 40]
+    same(tmp_path / "silent.db", tmp_path / "shown.db")
+
+
+def test_a_callback_stops_a_run_with_a_bar_too(file, tmp_path):
+    assert not pm.run(file, tmp_path / "s.db", progress=True, callback=lambda _: True).finished
+
+
+_NOTEBOOK = """
+import pareto_monoped as pm
+pm.run(pm.Study.define(name="n", evaluations=40, algorithm="random", audit=False), "n.db")
+"""
+
+
+def test_a_notebook_shows_a_bar_by_itself(tmp_path):
+    nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
+    book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(_NOTEBOOK)])
+    done = nbclient.NotebookClient(book, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    shown = [one.data.get("text/html", "") for one in done.cells[0].outputs if "data" in one]
+    assert any("<progress value='40' max='40'>" in html for html in shown)
+    assert any("<b>study n</b>" in html for html in shown)

@@ -34,7 +34,7 @@ RIGHT = {
     ("run", "callback", "class"),
 }
 """What is taken: a new folder, in which an export would take long, and what can be called, whose errors are its own."""
-HEAVY = {"export", "export_trial"}
+HEAVY = {"export", "export_trial", "film"}
 """Their target is a folder with something else in it, so that no value makes them export."""
 
 
@@ -47,12 +47,17 @@ def made(tmp_path_factory):
     pm.run(study, folder / "tiny.db")
     (folder / "full").mkdir()
     (folder / "full" / "other.txt").touch()
+    (folder / "grid.toml").write_text(
+        'name = "grid"\n[study]\nevaluations = 4\nalgorithm = "random"\n[axes]\nseeds = [1, 2]\n', encoding="utf-8"
+    )
     stored = pm.load_study(folder / "tiny.db")
     right = {
         "actuator_map": {},
         "build_robot": {"design": design},
         "export": {"design": design, "folder": "full"},
         "export_trial": {"study": "tiny.db", "trial": 0, "folder": "full"},
+        "film": {"design": design, "out": "full"},
+        "limit": {"study": "tiny.db", "trials": 0, "jumps": 20},
         "load_calibration": {"name_or_path": "reference"},
         "load_motor": {"name_or_path": "U8"},
         "load_study": {"path": "tiny.db"},
@@ -62,8 +67,13 @@ def made(tmp_path_factory):
         "resume": {"db": "tiny.db"},
         "robust": {"study": "tiny.db", "trials": 0, "samples": 2},
         "run": {"study": study, "db": "new.db"},
+        "run_campaign": {"file": folder / "grid.toml", "status": True},
+        "sensitivity": {"study": "tiny.db", "trial": 0, "samples": 2},
         "simulate": {"designs": design},
+        "status": {"study": "tiny.db"},
+        "table1": {},
         "trace": {"design": design},
+        "verify": {"study": "tiny.db"},
         "write_report": {"studies": "tiny.db", "out": "report.html"},
         "Study.define": tiny,
         "StoredStudy.pick": {"by": "knee"},
@@ -78,7 +88,13 @@ def test_every_public_function_is_tried(made):
 
 @pytest.mark.parametrize(
     "name",
-    [*(name for name in pm.__all__ if inspect.isfunction(getattr(pm, name))), "Study.define", "StoredStudy.pick"],
+    [
+        pytest.param(name, marks=pytest.mark.long if name == "sensitivity" else ())  # whose right values take long
+        for name in (
+            *(name for name in pm.__all__ if inspect.isfunction(getattr(pm, name))),
+            *("Study.define", "StoredStudy.pick"),
+        )
+    ],
 )
 def test_a_value_of_a_wrong_type_is_refused_in_our_words(name, made, tmp_path, monkeypatch):
     right, folder, stored = made

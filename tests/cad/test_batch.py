@@ -89,7 +89,9 @@ class Half:
                 time.sleep(0.01)
 
 
-@pytest.mark.parametrize("what", ["coordinator killed", "worker told to end by SIGTERM", "interrupt"])
+@pytest.mark.parametrize(
+    "what", ["coordinator killed", "worker told to end by SIGTERM", pytest.param("interrupt", marks=pytest.mark.long)]
+)
 def test_what_is_ended_leaves_nothing_half_written(tmp_path, what):
     code = f"""
 import signal

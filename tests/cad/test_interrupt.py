@@ -51,7 +51,7 @@ needs_proc = pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="ne
         pytest.param("building", marks=pytest.mark.long),
         pytest.param("simulating", marks=pytest.mark.long),
         pytest.param("checking", marks=pytest.mark.long),
-        "writing",
+        pytest.param("writing", marks=pytest.mark.long),
     ],
 )
 def test_an_interrupt_in_any_phase_leaves_nothing(phase, tmp_path):

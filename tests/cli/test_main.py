@@ -111,15 +111,6 @@ def test_a_closed_pipe_is_no_error():
     assert result.stdout.startswith("Usage: pareto-monoped")
 
 
-def test_commands_are_listed_in_the_order_of_use(capsys):
-    with pytest.raises(SystemExit) as caught:
-        cli.main(["--help"])
-    assert caught.value.code == 0
-    listed = [line.split()[0] for line in capsys.readouterr().out.split("Commands:\n")[1].splitlines()]
-    assert listed == list(cli._COMMANDS)
-    assert listed[0] == "pareto"
-
-
 @pytest.mark.parametrize("command", sorted(cli._COMMANDS))
 def test_help_fits_80_columns(capsys, monkeypatch, command):
     monkeypatch.setenv("COLUMNS", "120")
@@ -200,3 +191,21 @@ def test_a_slip_of_the_fingers_is_told_what_was_meant(words, said, capsys):
     line = capsys.readouterr().err
     assert said in line
     assert line.count("\n") == 1
+
+
+def test_the_help_groups_all_commands_in_the_order_of_use_and_its_examples_are_commands(capsys):
+    assert cli._run(["--help"]) == 0
+    shown = capsys.readouterr().out
+    assert [line[:-1] for line in shown.splitlines() if line.endswith(":") and not line.startswith((" ", "Usage"))] == [
+        "Options", *cli._GROUPS, "Examples",
+    ]  # fmt: skip
+    assert max(map(len, shown.splitlines())) <= 80
+    # Not the examples, which begin with a dollar or a hash.
+    listed = [line.split()[0] for line in shown.partition("Begin:")[2].splitlines() if re.match(r"  [a-z]", line)]
+    assert listed == list(cli._COMMANDS)
+    examples = [line.split() for line in shown.splitlines() if line.startswith("  $ ")]
+    assert len(examples) > 4
+    for _, program, command, *words in examples:
+        assert program == "pareto-monoped"
+        context = cli.cli.get_command(None, command).make_context(command, words)  # refuses unknown options and words
+        assert context.args == []

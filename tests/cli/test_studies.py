@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from pareto_monoped.cli import _run as cli
-from pareto_monoped.cli.studies import _described
 from pareto_monoped.measures import measure
 from pareto_monoped.pareto.front import AtHeight
 from pareto_monoped.study.run import RunSummary
@@ -229,6 +228,6 @@ def test_progress_gives_the_time_left_in_minutes_and_seconds():
     progress = Progress(
         evaluations=20, budget=40, per_second=12.6, seconds_left=125.4, hypervolume=1.234, at_height=unreached
     )
-    assert _described(progress) == "20/40, 13/s, 2:05 left, hypervolume 1.23, 0.8 m not reached"
-    assert _described(replace(progress, at_height=replace(unreached, value=9.876))).endswith("9.88 J at 0.8 m")
-    assert _described(replace(progress, at_height=None)).endswith("hypervolume 1.23")
+    assert progress.text() == "20/40, 13/s, 2:05 left, hypervolume 1.23, 0.8 m not reached"
+    assert replace(progress, at_height=replace(unreached, value=9.876)).text().endswith("9.88 J at 0.8 m")
+    assert replace(progress, at_height=None).text().endswith("hypervolume 1.23")

@@ -162,3 +162,35 @@ def test_every_file_that_contributing_names_exists():
     assert len(named) > 20
     for word in named:
         assert (ROOT / word).exists(), word
+
+
+def shown_by(page: str, command: str) -> list[list[str]]:
+    """The numbers of each line that a page shows below a command."""
+    lines = dict(commands(ROOT / page))[command]
+    return [NUMBER.findall(line) for line in lines]
+
+
+def test_the_tables_of_the_readme_are_those_of_the_main_job_and_of_table_1():
+    """CI makes what is shown below the commands to the last digit; the README repeats some of it in words."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    case_c, highest, exported = (
+        re.search(rf"^\| {start}.*? \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$", text, re.M).groups()
+        for start in ("the paper's best", "on the front", "exported")
+    )
+    published, simulated, front, knee = shown_by("docs/getting_started.md", "make pareto")[4:8]
+    jump = [(height, stands, energy) for height, energy, stands, _ in (row[-4:] for row in (simulated, front, knee))]
+    assert [case_c, highest, exported] == jump
+    assert f"gives {published[0]} m and {published[1]} J for Case C" in " ".join(text.split())
+    heights, energies = shown_by("docs/stages.md", "pareto-monoped table1")[-3:-1]
+    assert f"the calibration `paper` gives {heights[1]} m and {energies[1]} J" in " ".join(text.split())
+    said = " ".join((ROOT / "docs" / "getting_started.md").read_text(encoding="utf-8").split())
+    height, _, stands, rise = simulated
+    assert f"of Case C's {height} m, {stands} m is the base" in said
+    assert f"its centre of mass rises by {rise} m" in said
+
+
+def test_the_readme_repeats_what_getting_started_shows():
+    first = "pareto-monoped run studies/quick.toml"
+    assert (
+        shown_by("README.md", first) == shown_by("docs/getting_started.md", first)[: len(shown_by("README.md", first))]
+    )

@@ -110,11 +110,11 @@ def test_calibrations_on_several_threads_do_not_meet():
 
 def test_a_callback_on_disk_is_told_from_one_of_another_controller(tmp_path, monkeypatch):
     """The cache on disk depends on the callback's file and closure, not on the controller that the callback calls."""
-    for name in ("controller.py", "virtual_leg.py", "planar.py"):
+    for name in ("controller.py", "torques.py", "planar.py"):
         (tmp_path / name).write_text("axial = 1.0")
     monkeypatch.setattr(controller_record, "__file__", str(tmp_path / "controller_record.py"))
     origins = [controller_record.origin()]
-    for name in ("controller.py", "virtual_leg.py", "planar.py"):
+    for name in ("controller.py", "torques.py", "planar.py"):
         (tmp_path / name).write_text("axial = 2.0")
         origins += [controller_record.origin(), controller_record.origin()]
     assert origins[1::2] == origins[2::2]

@@ -148,7 +148,13 @@ def test_the_simulation_is_the_documented_one(which):
     compared(which, height_m=0.6e-3, share=2e-3)
 
 
-@pytest.mark.parametrize("which", JUMPS)
+@pytest.mark.parametrize(
+    "which",
+    [
+        pytest.param(name, marks=() if name in ("paper", "elastic, on the stand") else pytest.mark.long)
+        for name in JUMPS
+    ],
+)
 def test_both_converge_to_the_same_jump(which):
     """With a fine step in MuJoCo as well, what is left is the order of two methods: 0.3 um and 5e-6 of the energy.
 

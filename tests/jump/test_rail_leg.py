@@ -10,7 +10,7 @@ from pareto_monoped.errors import InputError
 from pareto_monoped.jump.controller_record import RECORD
 from pareto_monoped.jump.rail_leg import RailLeg, load_leg
 from pareto_monoped.jump.replay import fitted, replay, with_term
-from pareto_monoped.jump.virtual_leg import push
+from pareto_monoped.jump.torques import push
 
 LEGS = Path(__file__).parents[2] / "examples" / "legs"
 ODRI, DFKI = (load_leg(LEGS / f"{name}.toml") for name in ("odri_teststand", "dfki_hopping_leg"))

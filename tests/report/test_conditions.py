@@ -156,7 +156,7 @@ def test_choosers_on_the_front_within_are_scaled_to_the_whole_front(studies, rec
     """A condition that the answer meets never changes it; one that it misses brings the next best."""
     rng = random.Random(8)
     loaded = {name: pm.load_study(db) for name, db in studies.items()}
-    for k in range(60):
+    for k in range(30):
         name = list(STUDIES)[k % 5]
         stored, designs = loaded[name], records[name]
         objectives = stored.study.objectives.names
@@ -176,7 +176,7 @@ def test_choosers_on_the_front_within_are_scaled_to_the_whole_front(studies, rec
 def test_a_refusal_offers_what_brute_force_finds(studies, records):
     rng, checked = random.Random(9), 0
     loaded = {name: pm.load_study(db) for name, db in studies.items()}
-    for k in range(200):
+    for k in range(120):
         name = list(STUDIES)[k % 5]
         designs = records[name]
         conditions = drawn(rng, designs)
@@ -193,7 +193,7 @@ def test_a_refusal_offers_what_brute_force_finds(studies, records):
             assert any(meets(one, others | {about: (side, float(value))}) for one in designs)
             assert float(value) == pytest.approx(max(values) if side == "min" else min(values), rel=1e-4)
             checked += 1
-    assert checked > 20
+    assert checked > 10
 
 
 @pytest.fixture(scope="module")

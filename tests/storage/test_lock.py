@@ -9,15 +9,7 @@ import pytest
 
 from pareto_monoped.errors import DatabaseError, OutputError
 from pareto_monoped.storage.lock import holder, locked
-
-_HOLD = """
-import sys, time
-from pathlib import Path
-from pareto_monoped.storage.lock import locked
-with locked(Path(sys.argv[1])):
-    print("held", flush=True)
-    time.sleep(60)
-"""
+from tests.storage.test_other_systems import _HOLD
 
 
 @pytest.fixture

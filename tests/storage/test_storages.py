@@ -359,6 +359,7 @@ def test_rows_of_the_same_key_are_replaced(db):
         ("UPDATE monoped_meta SET value = '9' WHERE key = 'format'", "newer than this version's"),
     ],
 )
+@pytest.mark.parametrize("db", ["file", pytest.param("server", marks=pytest.mark.long)], indirect=True)
 def test_damage_is_found_by_readers(db, sql, statement, words):
     made_database(db)
     read_study(db)

@@ -21,8 +21,8 @@ MOTORS = 'motor = ["VT8020", "U8", "MN8014"]\n'
 PAIRS = 'hip_motor = ["VT8020", "U8"]\nknee_motor = ["U8", "MN8014"]\n'
 OPTIONAL = "[variables]\nknee_release_rad = { lower = 0.0, upper = 0.6 }\nrest_length_m = { lower = 2, upper = 12 }\n"
 EVERY = ("nsga2", "sms_emoa", "age_moea2", "surrogate", "optuna_nsga2", "optuna_tpe", "random")
-SHORT = {"battery": (WEIGHTED.replace("15", "10"), BATTERY), "motors": (SURROGATE, MOTORS + THREE)}
-"""Studies of 160 evaluations that one script kills three times each."""
+SHORT = {"battery": (WEIGHTED.replace("15", "6"), BATTERY), "motors": (SURROGATE, MOTORS + THREE)}
+"""Studies of 100 evaluations that one script kills twice each."""
 
 
 def kill_all(folder, studies, evaluations, kills, seed=3):
@@ -64,18 +64,18 @@ def killed(folder, algorithms, evaluations, kills, top=""):
 
 
 @pytest.fixture(scope="module")
-def three_times(tmp_path_factory):
-    found = kill_all(tmp_path_factory.mktemp("killed"), list(SHORT.values()), evaluations=160, kills=3)
+def twice(tmp_path_factory):
+    found = kill_all(tmp_path_factory.mktemp("killed"), list(SHORT.values()), evaluations=100, kills=2)
     return dict(zip(SHORT, found, strict=True))
 
 
 @pytest.mark.parametrize("name", SHORT)
-def test_killed_three_times(three_times, name):
-    check(*three_times[name], evaluations=160, kills=3)
+def test_killed_twice(twice, name):
+    check(*twice[name], evaluations=100, kills=2)
 
 
-def test_the_killed_studies_are_what_their_names_say(three_times):
-    data = {name: read_study(place / "killed.db") for name, (place, _) in three_times.items()}
+def test_the_killed_studies_are_what_their_names_say(twice):
+    data = {name: read_study(place / "killed.db") for name, (place, _) in twice.items()}
     assert data["battery"].study.objectives.names == ("height_m", "electrical_energy_j")
     assert data["motors"].trials["motor"].nunique() == 3
     assert data["motors"].study.objectives.names == ("height_m", "electrical_energy_j", "mass_kg")

@@ -61,3 +61,28 @@ def test_every_table_that_names_its_maker_names_a_script_that_is_there():
     makers = [made for page in PAGES for made in re.findall(r"<!-- made by: python (\S+)", page.read_text("utf-8"))]
     assert makers
     assert [made for made in makers if not (ROOT / made).exists()] == []
+
+
+def test_a_check_writes_nothing_and_names_what_would_change(script, tmp_path, monkeypatch, capsys):
+    page = tmp_path / "page.md"
+    text = "```console\n$ printf 'mass 5 kg\\n'\nmass 4 kg\n```\n"
+    page.write_text(text)
+    monkeypatch.setattr("sys.argv", ["documented.py", "--outputs", "--check", str(page)])
+    with pytest.raises(SystemExit) as caught:
+        script.main()
+    assert caught.value.code == 1
+    assert capsys.readouterr().out.splitlines() == ["page.md: - mass 4 kg", "page.md: + mass 5 kg"]
+    assert page.read_text() == text
+    page.write_text(text.replace("4", "5"))
+    with pytest.raises(SystemExit) as caught:
+        script.main()
+    assert caught.value.code == 0
+
+
+def test_how_long_something_took_stays_as_shown(script, tmp_path):
+    command = "printf 'a 20/20 1.500 m J   0.8 s   finished\\nb 2 m\\n'"
+    page = f"```console\n$ {command}\na 20/20 1.500 m J   7.2 s   finished\nb 1 m\n```\n"
+    new, _ = script.with_outputs(page, tmp_path)
+    assert new == page.replace("b 1 m", "b 2 m")
+    page = page.replace("1.500 m J   7.2", "1.400 m J   7.2")
+    assert "1.500 m J   0.8 s" in script.with_outputs(page, tmp_path)[0].split("\n", 2)[2]

@@ -8,14 +8,14 @@ from importlib import resources
 import numpy as np
 
 from pareto_monoped.cad.write.meshes import Collider, Visual, numbers
-from pareto_monoped.design import CONTROL, Design, columns
+from pareto_monoped.design import PAPER_CONTROL, Design, control_of
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.evaluate import evaluate_robots
 from pareto_monoped.jump.population import first_records
 from pareto_monoped.robot.population import RobotArrays
 
 _NUMBERS = (
-    *CONTROL[:-1],
+    *(*PAPER_CONTROL, "knee_release_rad", "rest_length_m"),
     *("timestep_s", "step_limit", "period_steps", "read_back_s", "delay_periods", "fade_length_m", "latch", "lags"),
     *("mean_speed", "voltage_limit", "loss_speed_rad_per_s", "regeneration_share", "thigh_length_m", "shank_length_m"),
     *("foot_radius_m", "weight_n", "torque_limit_n_m", "no_load_speed_rad_per_s", "corner_speed_rad_per_s", "loss"),
@@ -85,10 +85,11 @@ def jump_record(arrays: RobotArrays, design: Design, calibration: Calibration) -
     """Return the content of ``jump.json``, or of ``jump_stand.json`` under a calibration with a stand."""
     from pareto_monoped.jump.controller_record import TOUCH_M
 
-    control = columns(design.as_array()[None], CONTROL)
+    control = control_of(design.as_array()[None])
     record = first_records(arrays, control, calibration)[0]
     jump = evaluate_robots(arrays, control, calibration.by("mujoco"))
     numbers = {name: _finite(record[name]) for name in _NUMBERS}
+    numbers |= calibration.controller.law.record_of(record)
     numbers |= {"touch_m": TOUCH_M, "standby_power_w": calibration.drive.standby_power_w}
     numbers["expected"] = {name: _finite(getattr(jump, name)[0]) for name in _EXPECTED}
     return json.dumps(numbers, indent=2) + "\n"

@@ -100,7 +100,7 @@ WIDE = replace(
 
 
 @pytest.mark.parametrize("limits", [SETTINGS, WIDE], ids=["default", "wide"])
-@pytest.mark.parametrize("motor", ["U8", "VT8020", "U12"])
+@pytest.mark.parametrize("motor", ["U8", pytest.param("VT8020", marks=pytest.mark.long), "U12"])
 def test_no_set_goes_below_its_bound(motor, limits):
     """All widths tried, one after the other: the bounds assume that load factors grow with the width."""
     stage = build_stage(drawn(300, 7), load_motor(motor), "ESSPG", limits)

@@ -25,10 +25,15 @@ from pareto_monoped.geometry.roles import Role
 from pareto_monoped.robot.build import build_robot
 from tests.cad.drawing.crossings import crossed
 
-ROBOTS = [("A", "VT8020", "iso6336"), ("C", "VT8020", "paper"), ("B", "U12", "iso6336"), ("A", "U8", "iso6336")]
+ROBOTS = [
+    ("A", "VT8020", "iso6336"),
+    ("B", "U12", "iso6336"),
+    pytest.param(("C", "VT8020", "paper"), marks=pytest.mark.long),
+    pytest.param(("A", "U8", "iso6336"), marks=pytest.mark.long),
+]
 
 
-@pytest.fixture(params=ROBOTS, ids=" ".join, scope="module")
+@pytest.fixture(params=ROBOTS, ids=str, scope="module")
 def sheets(request):
     """Every part that a robot's workshop makes, with its sheet."""
     case, motor, rules = request.param

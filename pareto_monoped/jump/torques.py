@@ -1,4 +1,4 @@
-"""What the motors are told: the virtual leg of the paper, a push that is replayed, and the pose held in flight.
+"""What the motors are told: the laws of ``laws``, a push that is replayed, and the pose held in flight.
 
 Compiled by numba.
 """
@@ -6,8 +6,78 @@ Compiled by numba.
 import math
 from typing import Any
 
-from pareto_monoped.compute.compiled import compiled
-from pareto_monoped.jump.controller_record import HIP, KNEE
+import numpy as np
+
+from pareto_monoped.compute.compiled import call_address, compiled
+from pareto_monoped.design import MOST_KNOTS, Floats
+from pareto_monoped.jump.controller_record import HIP, KNEE, OVER_LENGTH, OVER_TIME, OWN, PUSH
+
+
+@compiled
+def torques(
+    angle: tuple[float, float],
+    foot: tuple[float, float],
+    shank: tuple[float, float],
+    speed: tuple[float, float],
+    jump: Any,
+) -> tuple[float, float]:
+    """Return the torques of hip and knee that the law of this jump wants, before any limit.
+
+    ``foot`` and ``shank`` are the vectors (x, z) from hip to foot and from knee to foot.
+    """
+    time_s = (jump.steps - 1.0) * jump.timestep_s
+    if jump.law == OVER_TIME:
+        return _on_profile(time_s, jump)
+    if jump.law == OVER_LENGTH:
+        return _on_profile(math.sqrt(foot[0] * foot[0] + foot[1] * foot[1]), jump)
+    if jump.law == PUSH:
+        return push(angle, foot, shank, speed, jump)
+    if jump.law == OWN:
+        return _own(time_s, angle, foot, speed, jump)
+    return virtual_leg(foot, shank, speed, jump)
+
+
+@compiled
+def _on_profile(place: float, jump: Any) -> tuple[float, float]:
+    """Return the torques at a time or leg length; before the first knot and after the last one those of that knot."""
+    share = (place - jump.first_knot) * jump.per_profile
+    knots, smooth = int(jump.knots), jump.cubic > 0.0
+    limit = jump.torque_limit_n_m
+    hip = limit[HIP] * between(share, jump.profile[1:], knots, smooth)
+    return hip, limit[KNEE] * between(share, jump.profile[1 + MOST_KNOTS :], knots, smooth)
+
+
+@compiled
+def between(share: float, values: Floats, knots: int, smooth: bool) -> float:
+    """Return the value at a share of the way, 0 to 1, from the first to the last of some equidistant knots.
+
+    It is a straight line from knot to knot or, if ``smooth``, a cubic whose slope at a knot is that between its
+    neighbours (Catmull and Rom, 1974); the outermost slopes are those of the outermost lines.
+    """
+    along = min(max(share, 0.0), 1.0) * (knots - 1)
+    k = min(int(along), knots - 2)
+    u = along - k
+    start, end = values[k], values[k + 1]
+    if not smooth:
+        return float(start + u * (end - start))
+    before = values[k - 1] if k > 0 else 2.0 * start - end
+    after = values[k + 2] if k + 2 < knots else 2.0 * end - start
+    out, in_ = 0.5 * (end - before), 0.5 * (after - start)
+    rise = end - start
+    return float(start + u * (out + u * (3.0 * rise - 2.0 * out - in_ + u * (out + in_ - 2.0 * rise))))
+
+
+@compiled
+def _own(
+    time_s: float, angle: tuple[float, float], foot: tuple[float, float], speed: tuple[float, float], jump: Any
+) -> tuple[float, float]:
+    """Return the torques of a law of the user's own, which is compiled apart and called by its address."""
+    state = np.empty(7)
+    state[0], state[1], state[2], state[3] = time_s, angle[HIP], angle[KNEE], speed[HIP]
+    state[4], state[5], state[6] = speed[KNEE], foot[0], foot[1]
+    torque = np.zeros(2)
+    call_address(np.int64(jump.own_address), state.ctypes, jump.profile.ctypes, torque.ctypes)
+    return torque[HIP], torque[KNEE]
 
 
 @compiled

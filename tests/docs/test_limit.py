@@ -1,0 +1,36 @@
+"""docs/limit.md and its script: the stored robots jump as they did, and the page shows their energies."""
+
+import re
+
+import numpy as np
+import pytest
+
+from pareto_monoped.design import complete, control_of
+from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.evaluate import evaluate_robots
+from tests.docs.scripts import ROOT, imported, rows
+
+PAGE = (ROOT / "docs" / "limit.md").read_text(encoding="utf-8")
+
+
+def test_the_stored_robots_jump_as_they_did():
+    """Under ``reference-3``, with the gearboxes of their time, to the last digits."""
+    with imported("limit_reference_3") as script:
+        designs, stored = complete(np.array(script.STORED["designs"])), script.STORED
+        jumps = evaluate_robots(script.stored_robots(designs), control_of(designs), load_calibration("reference-3"))
+    for name in ("height_m", "energy_j", "electrical_energy_j"):
+        np.testing.assert_allclose(jumps.of(name), stored[name], rtol=1e-9)
+    shown = re.findall(r"<!-- made by: python benchmarks/limit_reference_3.py.* -->\n((?:\|.*\n)+)", PAGE)
+    for k, row in enumerate(rows(shown[0])[1:]):
+        assert row[0] == stored["names"][k]
+        assert float(row[1]) == pytest.approx(stored["height_m"][k], abs=6e-4)
+        assert float(row[2]) == pytest.approx(stored[stored["energies"][k]][k], abs=6e-3)
+
+
+def test_both_ways_agree_on_five_designs():
+    (shown,) = re.findall(r"<!-- made by: python benchmarks/limit_collocation.py -->\n((?:\|.*\n)+)", PAGE)
+    numbers = rows(shown)[1:]
+    assert len(numbers) == 5
+    for row in numbers:
+        search, *collocation = map(float, row[3:6])
+        assert search / min(collocation) == pytest.approx(1.0, abs=0.02)
