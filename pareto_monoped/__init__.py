@@ -22,6 +22,7 @@ Example:
 from typing import TYPE_CHECKING, Any
 
 __version__ = "0.3.0"
+__date__ = "2026-11-23"  # of the version: on drawings of designs that no study made
 
 if TYPE_CHECKING:
     from pareto_monoped.actuator.actuator import Actuator

@@ -1,5 +1,6 @@
 """One actuator: motor, gearbox, parts, and what it can do."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -12,8 +13,9 @@ from pareto_monoped.actuator.rating.build import build_stage
 from pareto_monoped.actuator.rating.sheet import Rating, rate
 from pareto_monoped.actuator.rating.width import face_width_mm
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.parts import Part
-from pareto_monoped.geometry.roles import SCREWS, Group, Role
+from pareto_monoped.geometry.roles import GREASE, GREASE_G_PER_MM3, SCREWS, Group, Role
 from pareto_monoped.geometry.screws import M3
 from pareto_monoped.geometry.shapes import Numbers
 
@@ -112,7 +114,7 @@ def build_actuator(
     parts = actuator_parts(at, motor, family, settings)
     if settings.rules == "iso6336":
         rating = rating or rate(build_stage(gears, motor, family, settings), width)
-        parts = tuple(_with_safeties(part, rating) for part in parts)
+    parts = tuple(_finished(part, rating if settings.rules == "iso6336" else None, gears) for part in parts)
     ratio = float(gears.ratio)
     outer, inner = contact_ratios(gears)
     return Actuator(
@@ -143,12 +145,31 @@ _GEAR_OF_GROUP = {Group.ROTOR: "sun", Group.PLANET: "planet", Group.HOUSING: "ri
 """Group of a gear -> which one it is; the rating names them so."""
 
 
-def _with_safeties(part: Part, rating: Rating) -> Part:
-    """Build a gear with its least safety factors in the note, any other part as it is."""
+def _finished(part: Part, rating: Rating | None, gears: GearSet) -> Part:
+    """Build a gear with its grease, and its least safety factors in the note; any other part as it is."""
     if part.role is not Role.GEAR:
+        return part
+    part = replace(part, purchases=(replace(GREASE, count=_grease_g(part, gears)),))
+    if rating is None:
         return part
     flank, root = rating.of(_GEAR_OF_GROUP[part.group])
     return replace(part, note=f"{part.note}; S_H {flank:.2f}, S_F {root:.2f} (ISO 6336)")
+
+
+_GREASED = 1.0 / 3.0
+"""Of the space between teeth: full gears churn and warm up. Our own choice."""
+
+
+def _grease_g(part: Part, gears: GearSet) -> float:
+    """Return the grease between the teeth of a gear; splines are bonded and have none."""
+    teeth = {(number, gears.module_mm) for number in (gears.sun_teeth, gears.planet_teeth, gears.ring_teeth)}
+    free_mm3 = 0.0
+    for prism in part.prisms:
+        width_mm = float(prism.z1_mm) - float(prism.z0_mm)
+        for shape in (prism.outline, *prism.holes):
+            if isinstance(shape, ExternalGear | InternalGear) and (shape.teeth, shape.module_mm) in teeth:
+                free_mm3 += width_mm * abs(math.pi * float(shape.tip_radius_mm) ** 2 - float(shape.area_mm2()))
+    return _GREASED * GREASE_G_PER_MM3 * free_mm3
 
 
 def reflected_inertia_kg_m2(parts: tuple[Part, ...], gears: GearSet, motor: Motor) -> float:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.errors import InputError, complaint
 from pareto_monoped.geometry.making import Length, limits
+from pareto_monoped.geometry.roles import Purchase
 from pareto_monoped.geometry.shapes import Floats, Numbers
 
 
@@ -143,6 +144,41 @@ def rated_bearing(inner_diameter_mm: float) -> RatedBearing:
     """Return the catalogue's bearing with exactly this bore, with its ratings."""
     (found,) = (bearing for bearing in rated_bearings() if bearing.inner_diameter_mm == inner_diameter_mm)
     return found
+
+
+_SKF = {
+    "6800": "61800-2RZ", "6801": "61801-2RZ", "6802": "61802-2RZ", "6803": "61803-2RZ", "6804": "61804-2RZ",
+    "6805": "61805-2RZ", "6806": "61806-2RZ", "6807": "61807-2RZ", "6808": "61808-2RZ", "6809": "61809-2RZ",
+    "6810": "61810-2RZ", "6811": "61811-2RZ", "6812": "61812-2RZ", "6813": "61813-2RZ", "6814": "61814-2RZ",
+    "6815": "61815-2RZ", "6816": "61816-2RZ", "6817": "61817-2RZ", "6818": "61818-2RZ", "6819": "61819-2RZ",
+    "6820": "61820-2RZ",
+}  # fmt: skip
+"""SKF's bearings of the same size by the catalogue's designation."""
+_EXTRA_SMALL_MM = 10.0
+"""Below this bore the maker has clearances of its own: MC5, 13 to 20 um, lies within the 8 to 23 um of C3."""
+
+
+def ordered_bearing(bore_mm: Numbers) -> tuple[Purchase, ...]:
+    """Return the order of the catalogue's bearing with this bore: sealed, greased for life, of group C3; () for arrays.
+
+    The seals do not rub. Suffixes after the catalogues of NSK (VV), NTN (LLB) and SKF (2RZ).
+    """
+    if np.ndim(bore_mm):
+        return ()
+    bearing, bore = rated_bearing(float(bore_mm)), float(bore_mm)
+    name = bearing.designation
+    size = f"{bore:g} x {bearing.outer_diameter_mm:g} x {bearing.width_mm:g} mm"
+    small, others = bore < _EXTRA_SMALL_MM, [f"NTN {name}LLB/{CLEARANCE_GROUP}"]
+    if name in _SKF:
+        others.append(f"SKF {_SKF[name]}/{CLEARANCE_GROUP}")
+    return (
+        Purchase(
+            kind="bearing",
+            designation=f"NSK {name}VV{'MC5' if small else CLEARANCE_GROUP}, {size}",
+            standard="ISO 15",
+            alternatives=tuple(others),
+        ),
+    )
 
 
 @lru_cache(maxsize=1)
@@ -282,11 +318,16 @@ class RetainingRing:
         return np.maximum(_LEAST_COLLAR_MM, 0.25 * np.abs(self.size_mm - self.groove_diameter_mm))[()]
 
     @property
-    def name(self) -> str:
-        """As it is ordered, such as ``V-ring (DIN 471, inverted lugs) 40 x 1.75``; '' for arrays."""
+    def purchases(self) -> tuple[Purchase, ...]:
+        """Its order, such as ``V-ring with inverted lugs, DIN 471 - 40 x 1.75``; () for arrays."""
         if np.ndim(self.size_mm):
-            return ""
-        return f"V-ring ({self.standard}, inverted lugs) {self.size_mm:g} x {self.thickness_mm:g}"
+            return ()
+        size = f"{self.size_mm:g} x {self.thickness_mm:g}"
+        designation = f"V-ring with inverted lugs, for grooves of {self.standard} - {size}"
+        maker = f"Seeger {'AV' if self.standard == 'DIN 471' else 'JV'} {self.size_mm:g}"
+        return (
+            Purchase(kind="retaining ring", designation=designation, standard=self.standard, alternatives=(maker,)),
+        )
 
     @property
     def groove_note(self) -> str:

@@ -1,5 +1,7 @@
 """Parts of the ESSPG: gearbox in front of the framed motor."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from pareto_monoped.actuator.external_housing import BACK_BORE_MM, housing_parts
@@ -20,7 +22,7 @@ from pareto_monoped.actuator.features import (
 )
 from pareto_monoped.actuator.front import carrier_parts, gear_parts
 from pareto_monoped.actuator.layout import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, ExternalLayout, Layout, external_layout
-from pareto_monoped.actuator.motor import HolePattern, Motor, envelope_length
+from pareto_monoped.actuator.motor import HolePattern, Motor, envelope_length, motor_order
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role
@@ -170,7 +172,8 @@ def _motor_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Actu
             ),
             catalogue_mass_kg=(1.0 - rotor_share) * frame.mass_kg,
             catalogue_price_eur=motor.price_share_eur(1.0 - rotor_share),
-            note=f"{motor.name}, framed: stator, base and bearings",
+            purchases=(motor_order(motor, "framed"),),
+            note="stator, base and bearings",
         ),
         rotor_part(
             material=settings.materials.motor_rotor,
@@ -188,7 +191,8 @@ def _motor_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Actu
             catalogue_mass_kg=rotor_share * frame.mass_kg,
             lengths=(envelope_length(z_plate, z_motor),),
             catalogue_price_eur=motor.price_share_eur(rotor_share),
-            note=f"{motor.name}, framed: rotor with its face",
+            purchases=(replace(motor_order(motor, "framed"), count=0.0),),
+            note="rotor with its face, comes with the stator",
             joint=Joint(kind=JointKind.RUNNING, how="in the motor's own bearings on", partner="motor_stator"),
         ),
     )

@@ -14,9 +14,8 @@ from pareto_monoped.actuator.features import (
     slab,
     spigot,
     tube,
-    vents,
 )
-from pareto_monoped.actuator.layout import ExternalLayout, Layout
+from pareto_monoped.actuator.layout import ExternalLayout, Layout, vents
 from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.features import bored, turned
@@ -99,7 +98,8 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
             lengths=(ring_thickness(ring, z_groove_back),),
             group=Group.HOUSING,
             catalogue_mass_kg=ring.mass_kg,
-            note=ring.name and f"{ring.name}, in the ring housing's groove behind the main bearing",
+            purchases=ring.purchases,
+            note="in the ring housing's groove behind the main bearing",
         ),
     )
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from pareto_monoped.actuator.bearings import CLEARANCE_GROUP, Bearing, bearing_width
+from pareto_monoped.actuator.bearings import Bearing, bearing_width, ordered_bearing
 from pareto_monoped.actuator.layout import (
     COUPLING_DOWEL,
     NECK_NOTE,
@@ -26,10 +26,10 @@ from pareto_monoped.actuator.rating.load import runout_um
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.features import CENTRE_MM, Hole, Mouth, tap_run_out_mm
-from pareto_monoped.geometry.gears import ExternalGear, InternalGear
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear, active_diameters_mm
 from pareto_monoped.geometry.making import RELIEF_MM, Fit, ToothMaking, wider
 from pareto_monoped.geometry.parts import Part, Prism, steel_part, strong_part
-from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
+from pareto_monoped.geometry.roles import EPOXY, RETAINER, Group, Joint, JointKind, Purchase, Role, Visibility
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern, Shape
 from pareto_monoped.materials import ALLOYS, MATERIALS, GearGrade, Material
@@ -89,12 +89,15 @@ def sun_part(
             *behind,
         ),
         group=Group.ROTOR,
-        teeth=made(rated_teeth(at.gears.sun(), steel, settings, at.gears.planet()), spline_teeth(spline, settings)),
+        teeth=made(
+            rated_teeth(at.gears.sun(), steel, settings, at.gears.planet(), centre_mm=at.r_pins),
+            spline_teeth(spline, settings),
+        ),
         fits=tuple(Fit(diameter_mm=2.0 * radius, zone="h6", seat=True) for radius in (neck.r_journal, seat_mm)),
         features=(front, rear),
         note=f"one piece with its shaft, {spline_note(spline, shaft_mm)}; ground between centres, reliefs E 0.2 x 0.1 "
         f"(DIN 509); {NECK_NOTE}; {gear_note(teeth, settings)}",
-        joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling"),
+        joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling", adhesive=RETAINER),
     )
 
 
@@ -143,13 +146,6 @@ def gear_note(gear: ExternalGear | InternalGear, settings: ActuatorSettings) -> 
         f"{gear.teeth:g} teeth, module {gear.module_mm:g} mm, 20 degrees, {shift}"
         f"tooth thinned by {gear.backlash_mm:g} mm{making}"
     )
-
-
-def note_with(text: str, *numbers: Numbers) -> str:
-    """Return a note with numbers filled in; '' for arrays, because notes are used only for single actuators."""
-    if any(np.ndim(number) for number in numbers):
-        return ""
-    return text.format(*(f"{float(number):g}" for number in numbers))
 
 
 _NUMBER = (float, int, np.ndarray)
@@ -258,16 +254,6 @@ def motor_holes(motor: Motor, play_mm: float) -> Pattern:
     )
 
 
-def vents(inner_mm: Numbers, outer_mm: Numbers, wall_mm: float) -> tuple[Pattern, ...]:
-    """Return as many round holes as fit between two radii, ``wall_mm`` around each; none if they were below M3."""
-    radius, middle = 0.5 * (outer_mm - inner_mm) - wall_mm, 0.5 * (outer_mm + inner_mm)
-    count = np.floor(np.pi / np.arcsin(np.clip((radius + wall_mm) / middle, 0.01, 1.0)))
-    count = np.where(radius >= M3.hole, count, 0.0)[()]
-    if np.ndim(count) == 0 and count == 0.0:
-        return ()
-    return (Pattern(radius_mm=radius, pitch_radius_mm=middle, count=count),)
-
-
 def spigot(z_plate_mm: Numbers, at: Layout, settings: ActuatorSettings) -> tuple[Prism, ...]:
     """Build the backplate's step that centres it in the casing."""
     return tube(z_plate_mm, z_plate_mm + SPIGOT_MM, at.r_casing, at.r_casing - settings.parts.casing.vent_wall_mm)
@@ -293,12 +279,8 @@ def bought_bearing(
         lengths=(bearing_width(bearing, z_front_mm),),
         group=group,
         catalogue_mass_kg=bearing.mass_kg,
-        note=note_with(
-            "{} x {} x {} mm (ISO 15) " + CLEARANCE_GROUP + ", " + note,
-            bearing.inner_diameter_mm,
-            bearing.outer_diameter_mm,
-            bearing.width_mm,
-        ),
+        purchases=ordered_bearing(bearing.inner_diameter_mm),
+        note=note,
         joint=joint,
     )
 
@@ -328,8 +310,15 @@ def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, sha
             prisms=slab(z_shaft_mm, z_shaft_mm + MAGNET_MM, MAGNET_RADIUS_MM),
             process="bought",
             group=Group.ROTOR,
-            note="4 x 4 mm, magnetised across its axis",
-            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner=shaft),
+            purchases=(
+                Purchase(
+                    kind="magnet",
+                    designation=f"magnet {2.0 * MAGNET_RADIUS_MM:g} x {MAGNET_MM:g} mm, SmCo, "
+                    "magnetised across its axis",
+                    alternatives=("RLS RMM44A2C00",),
+                ),
+            ),
+            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner=shaft, adhesive=EPOXY),
         ),
         Part(
             name="encoder",
@@ -340,8 +329,9 @@ def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, sha
             process="bought",
             group=Group.HOUSING,
             catalogue_mass_kg=_BODY_KG,
-            note=f"RM08 (RLS), 12 bit; {_GAP_MM:g} mm from the magnet, within 0.5 mm",
-            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="encoder_cap"),
+            purchases=(Purchase(kind="encoder", designation="RLS RM08, 12 bit"),),
+            note=f"{_GAP_MM:g} mm from the magnet, within 0.5 mm",
+            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="encoder_cap", adhesive=EPOXY),
         ),
         housing_part(
             name="encoder_cap",
@@ -349,7 +339,7 @@ def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, sha
             material=MATERIALS.aluminium,
             prisms=tube(z_back_mm, z_back_mm + _CAP_MM, bore_mm, BODY_RADIUS_MM),
             note="flush with the backplate",
-            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="backplate"),
+            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="backplate", adhesive=EPOXY),
         ),
     )
 
@@ -403,9 +393,13 @@ def rated_teeth(
     steel: GearGrade,
     settings: ActuatorSettings,
     *mates: ExternalGear | InternalGear,
+    centre_mm: Numbers,
     crowning_um: float = 0.0,
 ) -> ToothMaking | None:
-    """Return how a rated gear is made, and its mates; None under the rules of the paper, and for arrays."""
+    """Return how a rated gear is made, and its mates, whose axes are ``centre_mm`` away.
+
+    None under the rules of the paper, and for arrays.
+    """
     if settings.rules == "paper" or np.ndim(gear.teeth):
         return None
     data, module = settings.parts.rating, float(gear.module_mm)
@@ -427,6 +421,7 @@ def rated_teeth(
         flank_rz_um=data.flank_roughness_um,
         root_rz_um=data.root_roughness_um,
         runout_mm=1e-3 * float(np.floor(runout)),
+        active_mm=active_diameters_mm(gear, mates, float(centre_mm)),
         crowning_um=crowning_um,
     )
 

@@ -22,7 +22,7 @@ from pareto_monoped.geometry.features import POINT_SHARE, bored, tap_run_out_mm,
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, ExternalGear
 from pareto_monoped.geometry.making import FINE_MM, Fit, Length, limits, narrower, raceway_note, wider
 from pareto_monoped.geometry.parts import Part, Prism, steel_part, strong_part
-from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
+from pareto_monoped.geometry.roles import BEARING_RETAINER, RETAINER, Group, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, clearance, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Numbers, Pattern
 from pareto_monoped.materials import ALLOYS
@@ -94,6 +94,7 @@ def _planet(at: Layout, settings: ActuatorSettings) -> Part:
                 settings,
                 gears.sun(),
                 gears.ring(),
+                centre_mm=at.r_pins,
                 crowning_um=settings.parts.rating.planet_crowning_um,
             )
         ),
@@ -161,9 +162,9 @@ def _ring(at: Layout, settings: ActuatorSettings) -> Part:
         group=Group.HOUSING,
         fits=(Fit(diameter_mm=2.0 * at.r_ring, zone="h6", seat=True),),
         lengths=(narrower("face", at.z_gear_back, at.z_gear_front),),
-        teeth=made(rated_teeth(gears.ring(), steel, settings, gears.planet())),
+        teeth=made(rated_teeth(gears.ring(), steel, settings, gears.planet(), centre_mm=at.r_pins)),
         note=gear_note(teeth, settings),
-        joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="ring_housing"),
+        joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="ring_housing", adhesive=RETAINER),
     )
 
 
@@ -298,7 +299,8 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             lengths=(ring_thickness(ring, at.z_bearing_front),),
             group=Group.OUTPUT,
             catalogue_mass_kg=ring.mass_kg,
-            note=ring.name and f"{ring.name}, in the carrier's groove before the main bearing",
+            purchases=ring.purchases,
+            note="in the carrier's groove before the main bearing",
         ),
         bought_bearing(
             "main_bearing", materials.bearing_steel, at.bearing, at.z_bearing_front, Group.OUTPUT, "thin-section"
@@ -310,7 +312,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             0.0,
             Group.OUTPUT,
             "carries the sun's end in the carrier",
-            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="carrier"),
+            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="carrier", adhesive=BEARING_RETAINER),
         ),
         *_web_screws(at, settings),
     )

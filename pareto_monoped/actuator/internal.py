@@ -1,5 +1,7 @@
 """Parts of the ISSPG: gearbox inside the stator of the frameless motor."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from pareto_monoped.actuator.features import (
@@ -16,7 +18,6 @@ from pareto_monoped.actuator.features import (
     housing_screw,
     magnet_centre,
     motor_holes,
-    note_with,
     rotor_part,
     shaft_end,
     skirt,
@@ -25,7 +26,6 @@ from pareto_monoped.actuator.features import (
     stator_part,
     sun_part,
     tube,
-    vents,
 )
 from pareto_monoped.actuator.front import carrier_parts, gear_parts
 from pareto_monoped.actuator.layout import (
@@ -35,14 +35,15 @@ from pareto_monoped.actuator.layout import (
     Layout,
     frameless,
     internal_layout,
+    vents,
 )
-from pareto_monoped.actuator.motor import Motor, envelope_length
+from pareto_monoped.actuator.motor import Motor, envelope_length, motor_order
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import FINE_MM, RELIEF_MM, Fit, Length, narrower, wider
 from pareto_monoped.geometry.parts import Part
-from pareto_monoped.geometry.roles import Group, Joint, JointKind
+from pareto_monoped.geometry.roles import BEARING_RETAINER, RETAINER, Group, Joint, JointKind
 from pareto_monoped.geometry.screws import M3, clearance, screw_for, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Pattern
 
@@ -83,7 +84,12 @@ def internal_parts(at: Layout, motor: Motor, settings: ActuatorSettings) -> tupl
             shell.z_seat,
             Group.HOUSING,
             "carries the rotor",
-            joint=Joint(kind=JointKind.BONDED, how="bonded onto the sun and into", partner="backplate"),
+            joint=Joint(
+                kind=JointKind.BONDED,
+                how="bonded onto the sun and into",
+                partner="backplate",
+                adhesive=BEARING_RETAINER,
+            ),
         ),
         *_motor_parts(at, shell, motor, settings),
         *encoder_parts(shell.z_plate, shell.z_end, shell.r_rear_seat - settings.parts.casing.lip_mm, "sun"),
@@ -215,7 +221,7 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
                 bored(Circle(radius_mm=at.r_seat), at.z_bearing_back, -casing.plate_mm, enters="high"),
                 bored(Circle(radius_mm=at.r_ring), at.z_gear_back, at.z_gear_front, enters="low"),
             ),
-            note=note_with("{} mm outside to fit the stator", 2.0 * at.r_stator_in),
+            note="" if np.ndim(at.r_stator_in) else f"{2.0 * at.r_stator_in:g} mm outside to fit the stator",
         ),
     )
 
@@ -315,8 +321,9 @@ def _motor_parts(at: Layout, shell: InternalLayout, motor: Motor, settings: Actu
             prisms=tube(z_stator_back, z_stator_back + height, at.r_stator_out, at.r_stator_in),
             catalogue_mass_kg=(1.0 - rotor_share) * kit.mass_kg,
             catalogue_price_eur=motor.price_share_eur(1.0 - rotor_share),
-            note=f"{motor.name}, frameless",
-            joint=Joint(kind=JointKind.BONDED, how="bonded onto", partner="ring_housing"),
+            purchases=(motor_order(motor, "frameless"),),
+            note="stator",
+            joint=Joint(kind=JointKind.BONDED, how="bonded onto", partner="ring_housing", adhesive=RETAINER),
         ),
         rotor_part(
             material=settings.materials.motor_rotor,
@@ -328,6 +335,7 @@ def _motor_parts(at: Layout, shell: InternalLayout, motor: Motor, settings: Actu
             lengths=(envelope_length(shell.z_coupling, z_bell, name="bell"),),
             catalogue_price_eur=motor.price_share_eur(rotor_share),
             features=(clearance(M3, (screws,), shell.z_coupling, z_bell, countersunk="high"),),
-            note=f"{motor.name}, frameless; countersink the bell's holes",
+            purchases=(replace(motor_order(motor, "frameless"), count=0.0),),
+            note="rotor, comes with the stator; countersink the bell's holes",
         ),
     )

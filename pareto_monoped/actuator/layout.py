@@ -29,7 +29,7 @@ from pareto_monoped.actuator.webs import Webs, webs_of
 from pareto_monoped.geometry.dowels import Dowel
 from pareto_monoped.geometry.gears import ExternalGear
 from pareto_monoped.geometry.screws import LENGTHS_MM, M3, screw_for
-from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.geometry.shapes import Numbers, Pattern
 
 Family = Literal["ISSPG", "ESSPG"]
 FAMILIES: tuple[Family, ...] = ("ISSPG", "ESSPG")
@@ -404,3 +404,13 @@ def frameless(motor: Motor) -> FramelessMotor:
     """Return the frameless motor, which every ISSPG has."""
     assert motor.frameless is not None
     return motor.frameless
+
+
+def vents(inner_mm: Numbers, outer_mm: Numbers, wall_mm: float) -> tuple[Pattern, ...]:
+    """Return as many round holes as fit between two radii, ``wall_mm`` around each; none if they were below M3."""
+    radius, middle = 0.5 * (outer_mm - inner_mm) - wall_mm, 0.5 * (outer_mm + inner_mm)
+    count = np.floor(np.pi / np.arcsin(np.clip((radius + wall_mm) / middle, 0.01, 1.0)))
+    count = np.where(radius >= M3.hole, count, 0.0)[()]
+    if np.ndim(count) == 0 and count == 0.0:
+        return ()
+    return (Pattern(radius_mm=radius, pitch_radius_mm=middle, count=count),)

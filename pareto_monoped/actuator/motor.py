@@ -2,13 +2,14 @@
 
 import math
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from pareto_monoped.actuator.windings import ResistanceKind, ThermalData, line_to_line_ohm, torque_constant_n_m_per_a
 from pareto_monoped.config import Positive, Strict
 from pareto_monoped.geometry.making import Length
+from pareto_monoped.geometry.roles import Purchase
 from pareto_monoped.geometry.shapes import Numbers
 
 # The search tries all tooth numbers that fit. Beyond this size it takes many seconds, and no leg needs such a motor.
@@ -276,3 +277,9 @@ _ENVELOPE_MM = 0.1
 def envelope_length(z0_mm: Numbers, z1_mm: Numbers, name: str = "length") -> Length:
     """Return a length of a motor with its limits."""
     return Length(name=name, z0_mm=z0_mm, z1_mm=z1_mm, lower_mm=-_ENVELOPE_MM, upper_mm=_ENVELOPE_MM)
+
+
+def motor_order(motor: Motor, variant: Literal["framed", "frameless"]) -> Purchase:
+    """Return the order of a motor; stator and rotor come together."""
+    designation = f"motor {motor.name}, {variant}, {motor.kv_rpm_per_v:g} rpm/V"
+    return Purchase(kind="motor", designation=designation, remark=motor.description)

@@ -1,16 +1,17 @@
 """What the planets turn on, as parts: a bush each, or rows of needle rollers between washers."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from pareto_monoped.actuator.features import note_with, tube
+from pareto_monoped.actuator.features import tube
 from pareto_monoped.actuator.layout import BUSH_PLAY_MM, Layout
 from pareto_monoped.actuator.needles import NeedleRows, needle_rows
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.making import Length
 from pareto_monoped.geometry.parts import Part
-from pareto_monoped.geometry.roles import Group, Role, Visibility
+from pareto_monoped.geometry.roles import GREASE, GREASE_G_PER_MM3, Group, Purchase, Role, Visibility
 from pareto_monoped.geometry.shapes import Numbers
 
 _BUSH_LENGTHS_MM = (4.0, 6.0, 8.0, 10.0)
@@ -51,7 +52,8 @@ def _bushes(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                     upper_mm=0.0,
                 ),
             ),
-            note=_bush_note(at.face_width_mm + 2.0 * stands_out, settings),
+            purchases=_ordered_bushes(at.face_width_mm + 2.0 * stands_out, settings),
+            note="end to end; longer than the planet on either side",
         ),
     )
 
@@ -64,17 +66,22 @@ def _planet_part(at: Layout) -> "partial[Part]":
     )
 
 
-def _bush_note(length_mm: Numbers, settings: ActuatorSettings) -> str:
+def _ordered_bushes(length_mm: Numbers, settings: ActuatorSettings) -> tuple[Purchase, ...]:
     """Return which bushes of the catalogue make a planet's bush: end to end, cut to equal lengths."""
     if np.ndim(length_mm):
-        return ""
+        return ()
     pieces = int(np.ceil(float(length_mm) / _BUSH_LENGTHS_MM[-1]))
     each = float(length_mm) / pieces
     bought = next(length for length in _BUSH_LENGTHS_MM if length >= each)
     size = f"{settings.parts.carrier.pin_diameter_mm:g} x {settings.planet_bore_mm:g} x {bought:g}"
     return (
-        f"{pieces} PTFE bronze bush{'' if pieces == 1 else 'es'} {size} mm (ISO 3547), each cut to {each:.1f} mm, end "
-        "to end; longer than the planet on either side"
+        Purchase(
+            kind="bush",
+            designation=f"PTFE bronze bush ISO 3547 - {size} mm",
+            standard="ISO 3547",
+            count=pieces,
+            remark=f"cut to {each:.1f} mm",
+        ),
     )
 
 
@@ -97,11 +104,8 @@ def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             prisms=tube(0.0, length, 0.5 * bore, 0.5 * pin),
             process="bought",
             catalogue_mass_kg=rows.needles * one_kg * length,
-            note=note_with(
-                f"{rows.needles} loose needle rollers " + "{} x {} mm (ISO 3096), full complement, greased",
-                data.diameter_mm,
-                rows.length_mm,
-            ),
+            purchases=_ordered_needles(rows, data.diameter_mm),
+            note="full complement, greased",
             places_mm=needles,
         ),
         planet_part(
@@ -113,7 +117,13 @@ def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             lengths=(
                 Length(name="thickness", z0_mm=0.0, z1_mm=data.washer_mm, lower_mm=-_WASHER_LESS_MM, upper_mm=0.0),
             ),
-            note=note_with("DIN 988, {} x {} x {}", pin, data.washer_diameter_mm, data.washer_mm),
+            purchases=(
+                Purchase(
+                    kind="washer",
+                    designation=f"shim ring DIN 988 - {pin:g} x {data.washer_diameter_mm:g} x {data.washer_mm:g}",
+                    standard="DIN 988",
+                ),
+            ),
             places_mm=washer_places,
         ),
     ]
@@ -130,6 +140,23 @@ def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             )
         )
     return tuple(parts)
+
+
+def _ordered_needles(rows: NeedleRows, diameter_mm: float) -> tuple[Purchase, ...]:
+    """Return the rollers of a row, and the grease between them; () for arrays."""
+    if np.ndim(rows.length_mm):
+        return ()
+    size = f"{diameter_mm:g} x {float(rows.length_mm):g}"
+    rollers = Purchase(
+        kind="needle roller",
+        designation=f"needle roller ISO 3096 - {size} mm - G2",
+        standard="ISO 3096",
+        alternatives=(f"INA NRB {size} G2",),
+        count=float(rows.needles),
+    )
+    # A ring of the rollers' diameter has 1 - pi / 4 of its section beside them.
+    free_mm3 = (4.0 / np.pi - 1.0) * float(rows.needles) * 0.25 * np.pi * diameter_mm**2 * float(rows.length_mm)
+    return rollers, replace(GREASE, count=GREASE_G_PER_MM3 * free_mm3)
 
 
 def _stacked(at: Layout, rows: NeedleRows) -> tuple[tuple[Place, ...], tuple[Place, ...], Numbers]:

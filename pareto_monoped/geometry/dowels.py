@@ -7,7 +7,7 @@ import numpy as np
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part
-from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role, Visibility
+from pareto_monoped.geometry.roles import RETAINER, Group, Joint, JointKind, Purchase, Role, Visibility
 from pareto_monoped.geometry.screws import cylinder
 from pareto_monoped.geometry.shapes import Numbers, Pattern
 from pareto_monoped.materials import ALLOYS, MATERIALS, Alloy, Material
@@ -99,8 +99,6 @@ def dowel_part(
         DesignError: no catalogue length fits.
     """
     length = dowel.length_mm(room_mm)
-    # In a population the lengths differ; notes are used only for single parts.
-    long = f" x {float(length):g}" if np.ndim(length) == 0 else ""
     return Part(
         name=name,
         role=Role.PIN,
@@ -114,6 +112,17 @@ def dowel_part(
         group=group,
         grade=dowel.alloy,
         fits=(dowel.fit,),
-        note=f"parallel pin {dowel.diameter_mm:g} m6{long} (ISO 8734 A){'; ' + note if note else ''}",
-        joint=Joint(kind=JointKind.BONDED, how="pressed and bonded into", partner=partner),
+        # In a population the lengths differ; purchases are used only for single parts.
+        purchases=() if np.ndim(length) else (_ordered(f"{dowel.diameter_mm:g} m6 x {float(length):g}"),),
+        note=note,
+        joint=Joint(kind=JointKind.BONDED, how="pressed and bonded into", partner=partner, adhesive=RETAINER),
+    )
+
+
+def _ordered(size: str) -> Purchase:
+    return Purchase(
+        kind="pin",
+        designation=f"parallel pin ISO 8734 - {size} - A - St",
+        standard="ISO 8734",
+        alternatives=(f"DIN 6325 - {size}",),
     )

@@ -24,6 +24,7 @@ the point cut is (h / cos(theta) + rho) (sin(theta), -cos(theta)) from the pitch
 the space (Litvin, Gear Geometry and Applied Theory, ch. 6, has the same curve).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -344,3 +345,25 @@ def _outline_mm(gear: ExternalGear | InternalGear) -> tuple[Numbers, Numbers]:
 
 
 _remembered_mm = lru_cache(maxsize=1024)(_outline_mm)
+
+
+def active_diameters_mm(
+    gear: ExternalGear | InternalGear, mates: Sequence[ExternalGear | InternalGear], centre_mm: float
+) -> tuple[float, float]:
+    """Return from which diameter to which the flanks of a gear touch those of its mates (ISO 21771-1).
+
+    On its root's side that is where the mate's tip comes: at a distance from the point in which the line of action
+    touches the gear's base circle. On its tip's side it is the tip.
+    """
+    base, tip = float(gear.base_radius_mm), float(gear.tip_radius_mm)
+    inside = isinstance(gear, InternalGear)
+    ends = []
+    for mate in mates:
+        other, hollow = float(mate.base_radius_mm), inside or isinstance(mate, InternalGear)
+        between = np.sqrt(centre_mm**2 - (abs(base - other) if hollow else base + other) ** 2)
+        reach = np.sqrt(float(mate.tip_radius_mm) ** 2 - other**2)
+        along = between + reach if inside else reach - between if hollow else between - reach
+        ends.append(float(np.hypot(base, along)))
+    end = max(ends) if inside else min(ends)
+    low, high = sorted((2.0 * tip, 2.0 * end))
+    return low, high

@@ -98,6 +98,8 @@ class ToothMaking:
     flank_rz_um: float = 0.0  #: greatest Rz of the flanks
     root_rz_um: float = 0.0  #: greatest Rz of the fillets
     runout_mm: float = 0.0  #: greatest radial runout of the teeth to the datum axis
+    #: Diameters between which the flanks touch those of their mates; None for teeth that do not roll
+    active_mm: tuple[float, float] | None = None
     crowning_um: float = 0.0  #: by how much the ends of the flanks stand back behind their middle
 
     @property

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.geometry.features import Bevel, Feature
 from pareto_monoped.geometry.making import Fit, Length, ToothMaking
-from pareto_monoped.geometry.roles import Group, Joint, Role, Visibility
+from pareto_monoped.geometry.roles import SOLID_UNITS, Group, Joint, Purchase, Role, Visibility
 from pareto_monoped.geometry.shapes import Circle, Floats, Moments, Numbers, Shape
 from pareto_monoped.geometry.tightening import Fastening
 from pareto_monoped.materials import ALLOYS, MATERIALS, Alloy, GearGrade, Material
@@ -231,7 +231,9 @@ class Part:
     catalogue_mass_kg: Numbers | None = None
     #: List price of one instance if it is bought and the price is known; else its class has one, see ``robot.cost``
     catalogue_price_eur: float | None = None
-    note: str = field(default="", compare=False)  #: what else the maker should know (standard, catalogue number)
+    #: What is bought for one instance, and used up when it is put in; () for arrays
+    purchases: tuple[Purchase, ...] = field(default=(), compare=False)
+    note: str = field(default="", compare=False)  #: what else the maker should know
     #: Alloy or steel grade with its condition, where the maker must keep to one
     grade: Alloy | GearGrade | None = field(default=None, compare=False)
     fits: tuple[Fit, ...] = field(default=(), compare=False)  #: tolerances of its round faces
@@ -249,6 +251,12 @@ class Part:
     def bevels(self) -> tuple[Bevel, ...]:
         """The cones of all features."""
         return tuple(bevel for feature in self.features for bevel in feature.bevels)
+
+    @property
+    def described(self) -> str:
+        """What is bought as the part itself, and its note, in words."""
+        bought = [one.text for one in self.purchases if one.unit in SOLID_UNITS] if self.process == "bought" else []
+        return "; ".join(filter(None, (*bought, self.note)))
 
     def volume_mm3(self) -> Numbers:
         """Return the volume of one instance."""

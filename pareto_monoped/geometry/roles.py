@@ -1,4 +1,6 @@
-"""What a part is for, what it moves with, how it is joined: typed, so that no behaviour depends on a part's name."""
+"""What a part is for, what it moves with, how it is joined, what is ordered for it: typed, so that no behaviour depends
+on a part's name, and no list on the words of a note.
+"""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -69,6 +71,68 @@ class JointKind(StrEnum):
     RUNNING = "running"  # a rotor in bearings that its supplier built in
 
 
+SOLID_UNITS = frozenset({"piece", "mm"})
+"""Units of purchases that a bought part is made of; others are used up."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Purchase:
+    """What is ordered for one instance of a part."""
+
+    kind: str  #: such as ``screw`` or ``grease``
+    designation: str  #: as it is ordered, with all that tells it from its like
+    standard: str = ""  #: that it follows; '' without one
+    alternatives: tuple[str, ...] = ()  #: the same from other makers, or by the name of an earlier standard
+    count: float = 1.0  #: for one instance, in ``unit``; 0 where it comes with another part's
+    unit: str = "piece"  #: or ``g``, ``ml``, ``mm``; of a ``pack`` one is enough for a robot
+    remark: str = ""  #: what is done with it before it is put in
+
+    @property
+    def text(self) -> str:
+        """Such as ``2 x nut ISO 4032 - M4 - 8``."""
+        several = f"{self.count:g} x " if self.unit == "piece" and self.count > 1.0 else ""
+        return f"{several}{self.designation}{self.remark and f', {self.remark}'}"
+
+
+# Other makers' names after their own tables of equivalents.
+RETAINER = Purchase(
+    kind="adhesive",
+    designation="retaining compound Loctite 638",
+    remark="10 ml",
+    standard="ISO 10123",
+    unit="pack",
+    alternatives=("WEICONLOCK AN 306-38",),
+)  #: Of cylinders that carry a torque: at least 25 MPa on steel.
+BEARING_RETAINER = Purchase(
+    kind="adhesive",
+    designation="retaining compound Loctite 641",
+    remark="10 ml",
+    standard="ISO 10123",
+    unit="pack",
+    alternatives=("WEICONLOCK AN 306-41",),
+)  #: Of bearings, which can be pressed out again.
+EPOXY = Purchase(
+    kind="adhesive",
+    designation="epoxy adhesive Loctite EA 9466",
+    remark="50 ml",
+    unit="pack",
+    alternatives=("UHU Plus Endfest",),
+)  #: Of sensors and magnets, and of printed cores on plates.
+GREASE = Purchase(
+    kind="grease",
+    designation="bearing grease SKF LGLT 2",
+    standard="DIN 51825 - KP2G-50",
+    unit="g",
+    alternatives=("Klueber Isoflex Topas NB 52",),
+)  #: Of gears and needles: stays in a case with vents, and churns little at 10,000 rpm.
+GREASE_G_PER_MM3 = 0.9e-3
+RUBBER_GLUE = Purchase(
+    kind="adhesive",
+    designation="rubber adhesive Loctite 406 with primer Loctite SF 770",
+    unit="pack",
+)  #: Of FKM on aluminium, which does not take an adhesive without a primer.
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Joint:
     """A joint that the shapes of the parts do not show."""
@@ -76,8 +140,9 @@ class Joint:
     kind: JointKind  #: what holds
     how: str  #: the joint in words, without the partner, such as ``pressed onto``
     partner: str  #: name of the part of the same unit that holds
+    adhesive: Purchase | None = None  #: where it is bonded
 
     @property
     def text(self) -> str:
         """The joint in words, for the parts list."""
-        return f"{self.how} {self.partner}"
+        return f"{self.how} {self.partner}{f' with {self.adhesive.designation}' if self.adhesive else ''}"

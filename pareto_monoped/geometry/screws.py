@@ -8,7 +8,7 @@ import numpy as np
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.features import COARSE_PITCHES_MM, Cone, CountersunkHead, Hole, Mouth, Thread
 from pareto_monoped.geometry.parts import Part, Prism
-from pareto_monoped.geometry.roles import Group, Role, Visibility
+from pareto_monoped.geometry.roles import Group, Purchase, Role, Visibility
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, Shape, polygon
 from pareto_monoped.geometry.tightening import Fastening, thread_size
 from pareto_monoped.materials import MATERIALS, Material
@@ -20,9 +20,8 @@ HEXAGON_HEIGHT_MM = {3.0: 2.0, 4.0: 2.8, 5.0: 3.5}
 """Of the head (ISO 4017), by thread."""
 HEXAGON_FLATS_MM = {3.0: 5.5, 4.0: 7.0, 5.0: 8.0}
 """Width across flats of screws (ISO 4017) and nuts (ISO 4032), by thread."""
-_STANDARDS = {"cap": "cap screw (ISO 4762)", "hexagon": "hexagon screw (ISO 4017)"}
-_COMMON = "countersunk (ISO 10642)"
-_SMALL = "countersunk (ISO 14581)"  # ISO 10642 begins at M3 and 8 mm
+_EARLIER = {"ISO 4762": "DIN 912", "ISO 4017": "DIN 933", "ISO 10642": "DIN 7991"}
+"""Standards under which screws of the same sizes are still sold."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -167,6 +166,33 @@ def screw_length_mm(grip_mm: Numbers, room_mm: Numbers) -> Numbers:
     return LENGTHS_MM[row][()]
 
 
+def ordered_screw(screw: Screw, head: Head, length_mm: float, grade: str) -> Purchase:
+    """Return the order of a screw, such as ``cap screw ISO 4762 - M3 x 8 - 8.8``."""
+    if head == "countersunk":
+        # ISO 10642 begins at M3 and 8 mm.
+        standard = "ISO 10642" if length_mm >= 8.0 and screw.shank >= 1.5 else "ISO 14581"
+    else:
+        standard = "ISO 4762" if head == "cap" else "ISO 4017"
+    size, earlier = f"{screw.name} x {length_mm:g} - {grade}", _EARLIER.get(standard)
+    return Purchase(
+        kind="screw",
+        designation=f"{head} screw {standard} - {size}",
+        standard=standard,
+        alternatives=(f"{earlier} - {size}",) if earlier else (),
+    )
+
+
+def ordered_nut(size: str, *, thin: bool = False, grade: str = "8") -> Purchase:
+    """Return the order of a hexagon nut, such as ``nut ISO 4032 - M4 - 8``."""
+    standard, earlier = ("ISO 4035", "DIN 439 B") if thin else ("ISO 4032", "DIN 934")
+    return Purchase(
+        kind="nut",
+        designation=f"{'thin ' if thin else ''}nut {standard} - {size} - {grade}",
+        standard=standard,
+        alternatives=(f"{earlier} - {size} - {grade}",),
+    )
+
+
 _ALONE = Pattern(radius_mm=0.0, pitch_radius_mm=0.0, count=1)
 
 
@@ -219,9 +245,6 @@ def screw_part(
         features = (
             CountersunkHead(shank_mm=screw.shank, radius_mm=screw.countersunk, face_mm=seat_mm, inwards=direction),
         )
-    # In a population the lengths differ; notes are used only for single parts.
-    long = f" x {float(length):g}" if np.ndim(length) == 0 else ""
-    standard = _STANDARDS.get(head) or (_COMMON if np.min(length) >= 8.0 and size >= 3.0 else _SMALL)
     part = Part(
         name=name,
         role=role,
@@ -235,6 +258,8 @@ def screw_part(
         visibility=visibility,
         features=features,
         fastening=screw.fastening(head, grade),
-        note=f"{screw.name}{long} {standard} {grade}{', ' + note if note else ''}",
+        # In a population the lengths differ; purchases are used only for single parts.
+        purchases=() if np.ndim(length) else (ordered_screw(screw, head, float(length), grade),),
+        note=note,
     )
     return part if places_mm is None else replace(part, places_mm=places_mm)

@@ -8,6 +8,7 @@ import numpy as np
 
 from pareto_monoped.errors import DesignError
 from pareto_monoped.geometry.features import COARSE_PITCHES_MM
+from pareto_monoped.geometry.roles import Purchase
 
 YIELD_MPA: dict[str, float] = {"8.8": 640.0, "10.9": 940.0, "12.9": 1100.0}
 """0.2 % proof stress by property class (ISO 898-1, up to M16)."""
@@ -22,8 +23,15 @@ width across flats of a hexagon: M3 4.57 of 5.5 mm, M4 5.88 of 7 (ISO 4017)."""
 _COUNTERSINK_RAD = 0.25 * np.pi
 """Half the angle of a countersunk head."""
 LOCKER = "medium-strength thread locker"
-"""On every screw: jumps shake, and most grips are shorter than the three diameters that lock by themselves. Anaerobic,
-for instance Loctite 243."""
+LOCK = Purchase(
+    kind="adhesive",
+    designation="thread locker Loctite 243",
+    remark="10 ml",
+    standard="ISO 10964",
+    alternatives=("WEICONLOCK AN 302-43",),
+    unit="pack",
+)
+"""On every screw: jumps shake, and most grips are shorter than the three diameters that lock by themselves."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -156,6 +156,6 @@ def actuator_fit(actuator_map: ActuatorMap) -> ActuatorFit:
         back_holes=mount.back_bolts.count,
         back_screw_mm=mount.back_bolts.diameter_mm,
         driver=driver,
-        driver_note="" if driver.carries(motor) else f"; {driver.limit(motor)}",
+        driver_note="" if driver.carries(motor) else driver.limit(motor),
         torque_n_m=max(actuator.peak_torque_n_m for actuator in actuators),
     )

@@ -8,7 +8,7 @@ from pareto_monoped.geometry.dowels import Dowel, dowel_part
 from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import Fit, Length
 from pareto_monoped.geometry.parts import Part, disc, layer, machined_part, sheet_part
-from pareto_monoped.geometry.roles import Joint, JointKind, Role, Visibility
+from pareto_monoped.geometry.roles import BEARING_RETAINER, Joint, JointKind, Role, Visibility
 from pareto_monoped.geometry.screws import M3, M4, clearance, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Pattern, Shape, hull
 from pareto_monoped.leg.dimensions import LegDimensions
@@ -155,7 +155,7 @@ def _far_cheek(z0_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         ),
         replace(
             bearing_part("base_bearing", d, z0_mm=z0_mm),
-            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="base_far_cheek"),
+            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="base_far_cheek", adhesive=BEARING_RETAINER),
         ),
     )
 

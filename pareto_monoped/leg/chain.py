@@ -9,8 +9,8 @@ import math
 import numpy as np
 
 from pareto_monoped.geometry.parts import Part, Prism, disc, layer, steel_part, strong_part
-from pareto_monoped.geometry.roles import Joint, JointKind, Role
-from pareto_monoped.geometry.screws import M5
+from pareto_monoped.geometry.roles import Joint, JointKind, Purchase, Role
+from pareto_monoped.geometry.screws import M5, ordered_nut
 from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Shape, rectangle
 from pareto_monoped.leg.dimensions import LegDimensions
 from pareto_monoped.materials import ALLOYS, MATERIALS
@@ -84,8 +84,15 @@ def chain_parts(length_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                 prisms=_piece(y_mm, sign, reach, radius, d),
                 catalogue_mass_kg=d.chain.kg_per_m * 1e-3 * links * d.chain.pitch_mm + 0.0 * length_mm,
                 joint=Joint(kind=JointKind.ENGAGED, how="around the teeth of", partner=sprocket),
-                note=f"{d.chain.name} (ISO 606), {links} links of {d.chain.pitch_mm:g} mm, an inner link at both ends; "
-                "put on with the knee in the middle of its range",
+                purchases=(
+                    Purchase(
+                        kind="chain",
+                        designation=f"roller chain ISO 606 - {d.chain.name} - {links} links of {d.chain.pitch_mm:g} mm",
+                        standard="ISO 606",
+                        remark="an inner link at both ends",
+                    ),
+                ),
+                note="put on with the knee in the middle of its range",
             )
             for end, y_mm, sign, sprocket in (
                 ("hip", 0.0, 1.0, "drive_sprocket"),
@@ -137,6 +144,14 @@ def _fastened(
             prisms=_end(side, d),
             places_mm=shifted(0.5 * pins_mm),
             grade=ALLOYS["c45_qt"],
+            purchases=(
+                Purchase(
+                    kind="pin",
+                    designation=f"bearing pin of roller chain ISO 606 - {d.chain.name}, {d.chain.pin_diameter_mm:g} mm",
+                    standard="ISO 606",
+                    remark="riveted into the fork",
+                ),
+            ),
             note=f"fork with {hand} {THREAD.name} - 6g stud, drawn as a square of its area; its pin goes through both "
             "cheeks and the chain's inner link and is riveted",
         ),
@@ -146,7 +161,8 @@ def _fastened(
             prisms=_nut(side),
             places_mm=shifted(half_bar_mm),
             joint=Joint(kind=JointKind.THREADED, how="threaded onto", partner=f"turnbuckle_end_{end}"),
-            note=f"thin nut {THREAD.name} {hand} (ISO 4035) 05, locks the bar",
+            purchases=(ordered_nut(f"{THREAD.name}{'-LH' if hand == 'left-hand' else ''}", thin=True, grade="05"),),
+            note="locks the bar",
         ),
     )
 

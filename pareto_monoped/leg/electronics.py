@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from pareto_monoped.geometry.parts import Part, sheet_part
-from pareto_monoped.geometry.roles import Role, Visibility
+from pareto_monoped.geometry.roles import Purchase, Role, Visibility
 from pareto_monoped.geometry.screws import HEXAGON_FLATS_MM, M4, Screw, between, clearance, hexagon, screw_part
 from pareto_monoped.geometry.shapes import Circle, Numbers, Shape, rectangle
 from pareto_monoped.leg.actuator_fit import MotorDriver
@@ -107,7 +107,13 @@ def driver_parts(joint: str, face_mm: Numbers, direction: float, d: LegDimension
             process="bought",
             prisms=(between(hexagon(_STANDOFF_FLATS), back, under, Circle(radius_mm=driver.screw.core)),),
             places_mm=holes,
-            note=f"hexagon standoff {driver.screw.name} x {_STANDOFF:g}, aluminium, female threads",
+            purchases=(
+                Purchase(
+                    kind="standoff",
+                    designation=f"hexagon standoff {driver.screw.name} x {_STANDOFF:g}, {_STANDOFF_FLATS:g} mm across "
+                    "flats, aluminium, female threads",
+                ),
+            ),
         ),
         _board(joint, under, over, direction, d),
         _standoff_screw(
@@ -195,5 +201,6 @@ def _board(joint: str, under_mm: Numbers, over_mm: Numbers, direction: float, d:
             ),
         ),
         catalogue_mass_kg=driver.mass_kg,
-        note=f"motor driver {driver.name}, bare board{d.of(joint).driver_note}",
+        purchases=(Purchase(kind="motor driver", designation=f"motor driver {driver.name}, bare board"),),
+        note=d.of(joint).driver_note,
     )

@@ -4,7 +4,7 @@ there.
 
 from dataclasses import replace
 
-from pareto_monoped.actuator.bearings import CLEARANCE_GROUP, width_less_mm
+from pareto_monoped.actuator.bearings import ordered_bearing, width_less_mm
 from pareto_monoped.geometry.features import turned
 from pareto_monoped.geometry.making import Fit, Length, narrower
 from pareto_monoped.geometry.parts import Part, disc, steel_part, strong_part
@@ -32,8 +32,7 @@ def bearing_part(
             ),
         ),
         catalogue_mass_kg=d.bearing_kg,
-        note=f"6804, {2.0 * d.bearing_bore_radius_mm:g} x {2.0 * d.bearing_outer_radius_mm:g} x "
-        f"{d.bearing_width_mm:g} mm (ISO 15) {CLEARANCE_GROUP}",
+        purchases=ordered_bearing(2.0 * d.bearing_bore_radius_mm),
         lengths=(
             Length(
                 name="width",

@@ -15,6 +15,8 @@ from pareto_monoped.geometry.screws import (
     between,
     cylinder,
     hexagon,
+    ordered_nut,
+    ordered_screw,
     screw_part,
     tapped,
 )
@@ -177,5 +179,6 @@ def _axle_bolt(d: LegDimensions) -> Part:
         pitch_radius_mm=_BOLT_PITCH_RADIUS,
         phase_rad=np.pi / 4,
         fastening=M4.fastening("cap", "8.8"),
-        note=f"M4 x {length:g} cap screw (ISO 4762) 8.8 with nut (ISO 4032) 8, clamps the whole knee",
+        purchases=(ordered_screw(M4, "cap", length, "8.8"), ordered_nut("M4")),
+        note="clamps the whole knee",
     )

@@ -10,8 +10,8 @@ import numpy as np
 from pareto_monoped.geometry.features import CountersunkHead
 from pareto_monoped.geometry.making import Length
 from pareto_monoped.geometry.parts import Part, layer, steel_part
-from pareto_monoped.geometry.roles import Role
-from pareto_monoped.geometry.screws import M3, Screw, cylinder, screw_length_mm
+from pareto_monoped.geometry.roles import EPOXY, Purchase, Role
+from pareto_monoped.geometry.screws import M3, Screw, cylinder, ordered_screw, screw_length_mm
 from pareto_monoped.geometry.shapes import Arc, Circle, Line, Numbers, Path, Shape, rectangle
 from pareto_monoped.geometry.tightening import LOCKER, Fastening
 from pareto_monoped.materials import MATERIALS
@@ -131,8 +131,15 @@ def sleeve_bolt(
         places_mm=places_mm,
         features=(_head(screw.shank + _SLEEVE_WALL, screw, -half_stack_mm), _head(screw.shank, screw, half_stack_mm)),
         fastening=sleeve_fastening(screw, plate_on_core_mm),
-        note=f"{screw.name} x {long:g} countersunk (ISO 10642) 8.8 in a countersunk sleeve nut {screw.name} x "
-        f"{sleeve:g}, flush, {stack:g} mm together",
+        purchases=(
+            ordered_screw(screw, "countersunk", long, "8.8"),
+            Purchase(
+                kind="nut",
+                designation=f"sleeve nut {screw.name} x {sleeve:g}, countersunk 90 degrees, "
+                f"{2.0 * (screw.shank + _SLEEVE_WALL):g} mm outside, steel",
+            ),
+        ),
+        note=f"flush, {stack:g} mm together",
     )
 
 
@@ -187,6 +194,7 @@ def core_part(
             ),
         ),
         lengths=(Length(name="thickness", z0_mm=-0.5 * gap_mm, z1_mm=0.5 * gap_mm, lower_mm=0.0, upper_mm=_CORE_MORE),),
+        purchases=(EPOXY,),
         note="print lying on a plate side, solid; bond to both plates with epoxy, so that they cannot buckle",
     )
 

@@ -1,9 +1,12 @@
 """The shank: a fork of two plates around the thigh's knee end, with the knee's axle, a core and the foot."""
 
+import math
 from typing import Literal
 
+import numpy as np
+
 from pareto_monoped.geometry.parts import Ball, Part, Prism, layer, machined_part, sheet_part
-from pareto_monoped.geometry.roles import Joint, JointKind, Role
+from pareto_monoped.geometry.roles import Joint, JointKind, Purchase, Role
 from pareto_monoped.geometry.screws import M3, M4, clearance
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, Shape, rectangle
 from pareto_monoped.leg.dimensions import LegDimensions
@@ -162,8 +165,38 @@ def foot_part(shank_length_m: Numbers, d: LegDimensions) -> Part:
         balls=(
             Ball(radius_mm=d.foot_radius_mm, y_mm=y_mm, top_mm=d.foot_flat_mm, pocket=_tongue(y_mm + d.foot_flat_mm)),
         ),
+        purchases=_cast(d),
         note="60 Shore A",
         joint=Joint(kind=JointKind.MOULDED, how="moulded onto the tongue of", partner="foot_block"),
+    )
+
+
+def _cast(d: LegDimensions) -> tuple[Purchase, ...]:
+    """Return what casting a foot takes: a tenth more than the ball, primer, and the pins of its mould."""
+    ball_mm3 = 4.0 / 3.0 * np.pi * d.foot_radius_mm**3
+    return (
+        Purchase(
+            kind="casting rubber",
+            designation="polyurethane VytaFlex 60 (Smooth-On), 60 Shore A",
+            count=math.ceil(1.1e-3 * ball_mm3),
+            unit="ml",
+        ),
+        Purchase(
+            kind="adhesive",
+            designation="primer Cilbond 49SF",
+            alternatives=("Chemlok 213",),
+            unit="pack",
+            remark="on the foot block's tongue",
+        ),
+        Purchase(kind="release agent", designation="mould release wax", unit="pack"),
+        Purchase(
+            kind="pin",
+            designation="parallel pin ISO 2338 - 4 m6 x 16 - St",
+            standard="ISO 2338",
+            alternatives=("DIN 7 - 4 m6 x 16",),
+            count=4,
+            remark="align both halves of the mould",
+        ),
     )
 
 

@@ -15,7 +15,7 @@ from pareto_monoped.actuator.needles import roller_bearing
 from pareto_monoped.geometry.features import Hole, Mouth
 from pareto_monoped.geometry.making import RELIEF_MM, Fit
 from pareto_monoped.geometry.parts import Part, Prism, disc, layer, steel_part
-from pareto_monoped.geometry.roles import Group, Joint, JointKind, Role
+from pareto_monoped.geometry.roles import GREASE, Group, Joint, JointKind, Purchase, Role
 from pareto_monoped.geometry.screws import M3
 from pareto_monoped.geometry.shapes import Arc, Circle, Floats, Line, Path, Pattern, Shape
 from pareto_monoped.leg.chain_drives import ChainDrive
@@ -104,6 +104,7 @@ SUPPORT_BORE_RADIUS = 4.0  # lightens the shaft: 2 mm of hardened wall are left 
 FLANGE = 3.0  # thickness, clamped between sprocket and drive coupling
 _CENTRE = SUPPORT_BORE_RADIUS + 0.5  # of the centres around its ends, between which the shaft is ground
 _OVERRUN = 0.5  # of the shaft beyond the bearing
+_GREASE_G = 0.5  # fills the space between the needles
 
 
 def middle_mm() -> float:
@@ -149,7 +150,14 @@ def support_parts(d: LegDimensions, flange_radius_mm: float, holes: tuple[Shape,
             prisms=(disc(SEAT_RADIUS, BACK, FRONT, Circle(radius_mm=SHAFT_RADIUS)),),
             catalogue_mass_kg=BEARING.mass_kg,
             joint=Joint(kind=JointKind.PRESSED, how="pressed into", partner="hip_coupling"),
-            note=f"{BEARING.designation}, {BEARING.inner_diameter_mm:g} x {BEARING.outer_diameter_mm:g} x "
-            f"{BEARING.width_mm:g} mm (ISO 3245)",
+            purchases=(
+                Purchase(
+                    kind="needle bearing",
+                    designation=f"drawn cup needle bearing {BEARING.designation}, open ends",
+                    standard="ISO 3245",
+                    alternatives=(f"NTN {BEARING.designation}", f"INA {BEARING.designation}"),
+                ),
+                replace(GREASE, count=_GREASE_G),
+            ),
         ),
     )

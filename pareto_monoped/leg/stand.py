@@ -32,6 +32,7 @@ class Carriage:
     """A carriage of a miniature linear guide."""
 
     name: str  #: of carriage and rail
+    rail: str  #: that it runs on
     length_mm: float
     width_mm: float
     hole_length_mm: float  #: between its four threads, along the rail
@@ -42,6 +43,7 @@ class Carriage:
 
 MGN12H = Carriage(
     name="MGN12H",
+    rail="MGN12",
     length_mm=45.4,
     width_mm=27.0,
     hole_length_mm=20.0,

@@ -6,7 +6,7 @@ holds them.
 """
 
 from pareto_monoped.geometry.parts import Part, Prism, disc, layer, machined_part
-from pareto_monoped.geometry.roles import Joint, JointKind, Role
+from pareto_monoped.geometry.roles import RUBBER_GLUE, Joint, JointKind, Purchase, Role
 from pareto_monoped.geometry.screws import M3, M4, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Numbers, Path, polygon
 from pareto_monoped.leg.dimensions import LegDimensions
@@ -56,9 +56,16 @@ def _bumper(name: str, stop: JointStop, seat: Face, partner: str) -> Part:
         process="bought",
         prisms=(disc(0.5 * bumper.diameter_mm, -half, half),),
         places_mm=(bumper_place(seat, stop),),
-        note=f"FKM {bumper.elastomer.hardness_shore_a:g} Shore A, round bar {bumper.diameter_mm:g} mm, "
-        f"cut to {bumper.length_mm:g} mm",
-        joint=Joint(kind=JointKind.BONDED, how="bonded to the floor of", partner=partner),
+        purchases=(
+            Purchase(
+                kind="rubber",
+                designation=f"round bar FKM {bumper.elastomer.hardness_shore_a:g} Shore A, {bumper.diameter_mm:g} mm",
+                count=bumper.length_mm,
+                unit="mm",
+                remark=f"cut to {bumper.length_mm:g} mm",
+            ),
+        ),
+        joint=Joint(kind=JointKind.BONDED, how="bonded to the floor of", partner=partner, adhesive=RUBBER_GLUE),
     )
 
 

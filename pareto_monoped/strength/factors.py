@@ -17,7 +17,7 @@ from pareto_monoped.files import kept
 from pareto_monoped.geometry.shapes import Floats
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.strength import chain, drive, gears, knee, links, mounts, plates, stops, threads
-from pareto_monoped.strength.gears import MOST_JUMPS, strike_life_jumps
+from pareto_monoped.strength.gears import MOST_JUMPS, strike_life_jumps, struck_safeties
 from pareto_monoped.strength.groups import GROUP_MEASURES
 from pareto_monoped.strength.joint import (
     LOAD_NAMES,
@@ -212,6 +212,9 @@ class GearLife:
 
     jumps: float  #: for which the weaker gearbox has the safety of its duty; 0 if for none, at most ``MOST_JUMPS``
     duty_jumps: float  #: what the gears are made for
+    flank_safety: float  #: least S_H against pits, if as many jumps as the duty has strike like this
+    root_safety: float  #: least S_F against broken teeth, likewise
+    asked: tuple[float, float]  #: S_H and S_F of the duty
 
     @property
     def text(self) -> str:
@@ -220,14 +223,25 @@ class GearLife:
         return f"{MOST_JUMPS:.0e} or more" if self.jumps >= MOST_JUMPS else f"{round(self.jumps, -digits):.0f}"
 
     @property
+    def safeties(self) -> str:
+        """What the gears have against fatigue, and what their duty asks, in words."""
+        flank, root = self.asked
+        return (
+            f"{self.flank_safety:.2f} against pits, where their duty asks {flank:g}, and {self.root_safety:.2f} "
+            f"against broken teeth, where it asks {root:g}"
+        )
+
+    @property
     def advice(self) -> str:
         """One line where the gears do not last as long as they should; '' otherwise."""
         if self.jumps >= self.duty_jumps:
             return ""
+        kept = f"for {self.text} jumps" if self.jumps > 0.0 else "in no number of jumps"
         return (
-            f"struck like this in every jump, the gears keep the safety of their duty for {self.text} of "
-            f"{self.duty_jumps:.0f} jumps; choose heavier gearboxes, release the knee before its stop "
-            "(knee_release_rad), or constrain gear_strike_safety to at least 1"
+            f"struck like this in each of {self.duty_jumps:.0f} jumps, the gears have a safety of {self.safeties}; "
+            f"they have both {kept}, while gear_safety tells whether they survive a strike once; choose heavier "
+            "gearboxes, release the knee before its stop (knee_release_rad), or constrain gear_strike_safety to at "
+            "least 1"
         )
 
 
@@ -238,11 +252,15 @@ def gear_life(design: Design, maps: Maps, loads: Loads) -> GearLife | None:
     torques = {side: float(loads[f"peak_gear_torque_{side}_n_m"][0]) for side in SIDES}
     if settings.rules == "paper" or np.isnan(list(torques.values())).any():
         return None
-    jumps = min(
-        strike_life_jumps(
-            Structure(actuator=both.of(side).lookup(getattr(design, f"{side}_ratio")), leg=leg, settings=settings),
-            torque,
-        )
-        for side, torque in torques.items()
+    built = {
+        side: Structure(actuator=both.of(side).lookup(getattr(design, f"{side}_ratio")), leg=leg, settings=settings)
+        for side in torques
+    }
+    safeties = [struck_safeties(built[side], torque) for side, torque in torques.items()]
+    return GearLife(
+        jumps=min(strike_life_jumps(built[side], torque) for side, torque in torques.items()),
+        duty_jumps=settings.parts.duty.jumps,
+        flank_safety=min(flank for flank, _ in safeties),
+        root_safety=min(root for _, root in safeties),
+        asked=(settings.parts.rating.flank_safety, settings.parts.rating.root_safety),
     )
-    return GearLife(jumps=jumps, duty_jumps=settings.parts.duty.jumps)

@@ -65,6 +65,20 @@ def strike_torques_n_m(structures: Sequence[Structure]) -> list[float]:
     return torques.tolist()
 
 
+def struck_safeties(s: Structure, torque_n_m: float, jumps: float | None = None) -> tuple[float, float]:
+    """Return S_H and S_F against fatigue of an actuator's gears if so many jumps strike with this torque.
+
+    By default as many as their duty has. NaN under the rules ``paper``.
+    """
+    if s.settings.rules == "paper":
+        return float("nan"), float("nan")
+    actuator, parts = s.actuator, s.settings.parts
+    stage = build_stage(actuator.gears, actuator.motor, actuator.family, s.settings)
+    share = torque_n_m / actuator.peak_torque_n_m
+    flank, root = strike_safeties(stage, actuator.face_width_mm, share, parts.duty.jumps if jumps is None else jumps)
+    return float(flank), float(root)
+
+
 def strike_life_jumps(s: Structure, torque_n_m: float) -> float:
     """Return the jumps that an actuator's gears last if each of them strikes with this torque, at the safeties of their
     duty.
@@ -73,13 +87,11 @@ def strike_life_jumps(s: Structure, torque_n_m: float) -> float:
     """
     if s.settings.rules == "paper":
         return float("nan")
-    actuator, data = s.actuator, s.settings.parts.rating
-    stage = build_stage(actuator.gears, actuator.motor, actuator.family, s.settings)
-    share = torque_n_m / actuator.peak_torque_n_m
+    data = s.settings.parts.rating
 
     def lasts(jumps: float) -> bool:
-        flank, root = strike_safeties(stage, actuator.face_width_mm, share, jumps)
-        return bool(flank >= data.flank_safety and root >= data.root_safety)
+        flank, root = struck_safeties(s, torque_n_m, jumps)
+        return flank >= data.flank_safety and root >= data.root_safety
 
     low, high = 0.0, float(np.log10(MOST_JUMPS))
     if not lasts(1.0):

@@ -14,8 +14,9 @@ def test_bushes_of_the_catalogue_make_the_drawn_one(actuator):
     (bush,) = (part for part in actuator.parts if part.name == "planet_bush")
     (tube,) = bush.prisms
     length = float(tube.z1_mm - tube.z0_mm)
-    found = re.match(r"(\d+) PTFE bronze bush(?:es)? 6 x 8 x (\d+) mm \(ISO 3547\), each cut to ([\d.]+) mm", bush.note)
-    pieces, bought, cut = int(found[1]), float(found[2]), float(found[3])
+    (order,) = bush.purchases
+    bought = float(re.fullmatch(r"PTFE bronze bush ISO 3547 - 6 x 8 x (\d+) mm", order.designation)[1])
+    pieces, cut = order.count, float(re.fullmatch(r"cut to ([\d.]+) mm", order.remark)[1])
     assert pieces * cut == pytest.approx(length, abs=0.05 * pieces)
     assert bought in (4.0, 6.0, 8.0, 10.0)
     assert cut - 0.05 <= bought < cut + 2.05  # the next longer one

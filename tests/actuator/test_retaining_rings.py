@@ -57,7 +57,7 @@ def test_rings_come_in_arrays_and_none_fits_a_size_between():
     ring = retaining_ring("DIN 471", sizes)
     assert ring.thickness_mm == pytest.approx([1.75, np.nan, 2.0, np.nan], nan_ok=True)
     assert np.isnan(retaining_ring("DIN 471", 300.0).mass_kg)
-    assert (ring.name, ring.groove_note, ring.groove_zone) == ("", "", "")
+    assert (ring.purchases, ring.groove_note, ring.groove_zone) == ((), "", "")
 
 
 HEAD = "standard,size_mm,thickness_mm,radial_width_mm,groove_diameter_mm,groove_zone,groove_width_mm,mass_kg\n"
@@ -115,7 +115,8 @@ def test_every_groove_is_as_wide_as_its_standard_says_and_holds_its_ring_against
             # The ring lies between the bearing and the groove's far face.
             face, far = (bearing.z0_mm, low) if inside else (bearing.z1_mm, high)
             assert sorted((float(drawn.z0_mm), float(drawn.z1_mm))) == pytest.approx(sorted((float(face), far)))
-            assert f"{size:g} x {float(ring.thickness_mm):g}" in parts[name].note
+            (order,) = parts[name].purchases
+            assert order.designation.endswith(f"{standard} - {size:g} x {float(ring.thickness_mm):g}")
             assert f"{float(ring.groove_width_mm):g} H13" in parts[holder].note
             assert any(
                 fit.text == f"{float(ring.groove_diameter_mm):g} {ring.groove_zone}" for fit in parts[holder].fits

@@ -9,6 +9,8 @@ import time
 import pytest
 
 from pareto_monoped.cad import batch
+from pareto_monoped.cad.jobs import case_job
+from pareto_monoped.cad.kernel import client as kernel
 from pareto_monoped.cad.write.folder import beside
 from pareto_monoped.compute.processes import Processes
 from tests.cad.test_interrupt import is_running
@@ -53,6 +55,23 @@ def test_what_is_in_progress_at_a_failure_ends(tmp_path, monkeypatch):
 def test_a_process_that_dies_is_a_failure(tmp_path, monkeypatch):
     words = "a worker process ended by itself; run the same command again"
     assert made(monkeypatch, tmp_path, ["a", "deadly", "c"]) == (["a"], words)
+
+
+def kernel_process():
+    """Number of this process's kernel, in a process of a batch."""
+    return kernel._kernel._lines[0].process.pid
+
+
+def test_a_process_of_a_batch_keeps_its_kernel_between_designs(tmp_path):
+    how = {"formats": ["urdf"], "strength": False}
+    jobs = [case_job(case, folder=tmp_path / case, **how) for case in ("C", "B")]
+    found = []
+    with Processes(lost=batch._lost) as processes:
+        for job in jobs:
+            processes.submit(batch._make, job).result()
+            found.append(processes.submit(kernel_process).result())
+    assert found[0] == found[1]
+    assert [(job.folder / "model" / "monoped.urdf").exists() for job in jobs] == [True, True]
 
 
 class Half:

@@ -18,7 +18,7 @@ from tests.cli.support import run
 def test_simulate_json_has_what_others_rely_on(capsys):
     code, out, err = run(capsys, "simulate", "--case", "C", "--json")
     assert code == 0
-    assert err.startswith("note: struck like this in every jump, the gears")
+    assert err.startswith("note: struck like this in each of 100000 jumps, the gears")
     assert err.count("note: ") == 1
     report = json.loads(out)
     assert report["status"] == "ok"

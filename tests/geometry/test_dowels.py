@@ -28,7 +28,7 @@ def test_the_longest_length_sold_is_taken(room_mm, length_mm):
     assert Dowel(diameter_mm=3.0).length_mm(room_mm) == length_mm
     found = part(room_mm)
     assert (found.prisms[0].z0_mm, found.prisms[0].z1_mm) == (-5.0, length_mm - 5.0)
-    assert found.note == f"parallel pin 3 m6 x {length_mm:g} (ISO 8734 A)"
+    assert [one.designation for one in found.purchases] == [f"parallel pin ISO 8734 - 3 m6 x {length_mm:g} - A - St"]
 
 
 def test_a_population_has_its_own_lengths():

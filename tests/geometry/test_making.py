@@ -46,8 +46,10 @@ def test_every_screw_says_how_tight_and_what_locks_it(parts):
     assert len(screws) > 20
     for part in screws:
         fastening = part.fastening
-        assert part.note.startswith(f"M{fastening.thread.diameter_mm:g} x ")
-        assert f" {fastening.property_class}" in part.note
+        (order, *_) = part.purchases
+        assert order.kind == "screw"
+        assert f" - M{fastening.thread.diameter_mm:g} x " in order.designation
+        assert order.designation.endswith(f" - {fastening.property_class}")
         assert 0.2 < fastening.torque_n_m < 10.0
         assert fastening.lock
     assert all(part.fastening is None or part.role in FASTENERS for part in parts)

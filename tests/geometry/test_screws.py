@@ -85,12 +85,16 @@ def test_a_plate_thinner_than_a_countersunk_head_is_refused():
     assert just.prisms[0].z1_mm == pytest.approx(1.86)
 
 
-def test_notes_name_size_standard_and_grade():
-    assert made(note="into x").note == "M3 x 6 cap screw (ISO 4762) 8.8, into x"
-    assert made(head="countersunk").note == "M3 x 6 countersunk (ISO 14581) 8.8"
-    assert made(head="countersunk", room_mm=6.0, grade="10.9").note == "M3 x 8 countersunk (ISO 10642) 10.9"
-    assert made(M25, head="countersunk", room_mm=6.0).note == "M2.5 x 8 countersunk (ISO 14581) 8.8"
-    assert made(head="hexagon").note == "M3 x 6 hexagon screw (ISO 4017) 8.8"
+def test_orders_name_size_standard_and_grade():
+    assert made(note="into x").described == "cap screw ISO 4762 - M3 x 6 - 8.8; into x"
+    assert made(head="countersunk").described == "countersunk screw ISO 14581 - M3 x 6 - 8.8"
+    assert (
+        made(head="countersunk", room_mm=6.0, grade="10.9").described == "countersunk screw ISO 10642 - M3 x 8 - 10.9"
+    )
+    assert made(M25, head="countersunk", room_mm=6.0).described == "countersunk screw ISO 14581 - M2.5 x 8 - 8.8"
+    (order,) = made(head="hexagon").purchases
+    assert order.designation == "hexagon screw ISO 4017 - M3 x 6 - 8.8"
+    assert (order.standard, order.alternatives) == ("ISO 4017", ("DIN 933 - M3 x 6 - 8.8",))
 
 
 def test_a_hexagon_head_is_one_over_flats_and_corners():

@@ -69,13 +69,13 @@ def test_travel_and_thread_of_the_turnbuckles(leg_of_each_chain, length, side):
 
 
 def test_the_parts_list_gives_whole_links_and_the_bar_s_length(leg):
-    notes = {name: part.note for name, part in parts_of(347.3, leg).items()}
-    assert notes["chain_hip"].startswith("084 (ISO 606), 15 links of 12.7 mm, an inner link at both ends")
+    notes = {name: part.described for name, part in parts_of(347.3, leg).items()}
+    assert notes["chain_hip"].startswith("roller chain ISO 606 - 084 - 15 links of 12.7 mm, an inner link at both ends")
     assert notes["chain_knee"] == notes["chain_hip"]
     # 347.3 mm less both reaches of 50.8 mm and both ends of 17 mm.
     assert "8 mm square, 211.7 mm long, milled to 3 mm" in notes["turnbuckle_bar"]
-    assert notes["turnbuckle_nut_hip"].startswith("thin nut M5 right-hand (ISO 4035)")
-    assert notes["turnbuckle_nut_knee"].startswith("thin nut M5 left-hand (ISO 4035)")
+    assert notes["turnbuckle_nut_hip"].startswith("thin nut ISO 4035 - M5 - 05")
+    assert notes["turnbuckle_nut_knee"].startswith("thin nut ISO 4035 - M5-LH - 05")
 
 
 def test_only_the_bars_grow_with_the_thigh(leg):

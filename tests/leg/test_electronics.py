@@ -54,7 +54,7 @@ def test_the_lightest_board_that_carries_the_motor_is_chosen(name, driver, carri
 
 
 def test_a_board_that_limits_its_motor_says_so_in_the_parts_list():
-    notes = {part.note for part in boards(leg_dimensions(map_for("U12"))).values()}
+    notes = {part.described for part in boards(leg_dimensions(map_for("U12"))).values()}
     assert notes == {
         "motor driver ODrive Pro, bare board; gives 120 A of the 158 A that U12 takes at its peak torque, and so 76% "
         "of that torque"

@@ -128,23 +128,27 @@ def test_units_of_another_motor_are_what_they_were(design):
 
 
 def test_notes_for_the_maker_give_the_sizes_that_are_drawn(design, actuator_map):
-    notes = {part.name: part.note for unit in build_robot(design, actuator_map).units for part in unit.parts}
+    notes = {part.name: part.described for unit in build_robot(design, actuator_map).units for part in unit.parts}
     for name, note in {
         "base_near_cheek": "6 mm sheet",
-        "knee_bumper_flexion": "FKM 75 Shore A, round bar 28 mm, cut to 28 mm",
+        "knee_bumper_flexion": "round bar FKM 75 Shore A, 28 mm, cut to 28 mm",
         "knee_striker_bolt": (
-            "M4 x 16 countersunk (ISO 10642) 8.8 in a countersunk sleeve nut M4 x 30, flush, 39 mm together"
+            "countersunk screw ISO 10642 - M4 x 16 - 8.8; sleeve nut M4 x 30, countersunk 90 degrees, 5 mm outside, "
+            "steel; flush, 39 mm together"
         ),
         "base_far_cheek": "8 mm plate",
-        "base_bearing": "6804, 20 x 32 x 7 mm (ISO 15) C3",
+        "base_bearing": "NSK 6804VVC3, 20 x 32 x 7 mm",
         "base_rod": "10 mm tube; the test stand's carriage clamps to the rods",
         "thigh_plate_inner": "2.5 mm sheet",
         "thigh_plate_outer": "2.5 mm sheet; carries the knee actuator",
         "thigh_standoff": "spigot into the inner plate, screwed to the outer one",
-        "thigh_bolt": "M3 x 16 countersunk (ISO 10642) 8.8 in a countersunk sleeve nut M3 x 20, flush, 29 mm together",
+        "thigh_bolt": (
+            "countersunk screw ISO 10642 - M3 x 16 - 8.8; sleeve nut M3 x 20, countersunk 90 degrees, 4 mm outside, "
+            "steel; flush, 29 mm together"
+        ),
         "drive_sprocket": "084, 14 teeth (ISO 606)",
-        "knee_bearing": "6804, 20 x 32 x 7 mm (ISO 15) C3",
-        "journal_screw": "M5 x 12 cap screw (ISO 4762) 8.8, into the knee motor's own mounting pattern",
-        "knee_bolt": "M4 x 45 cap screw (ISO 4762) 8.8 with nut (ISO 4032) 8, clamps the whole knee",
+        "knee_bearing": "NSK 6804VVC3, 20 x 32 x 7 mm",
+        "journal_screw": "cap screw ISO 4762 - M5 x 12 - 8.8; into the knee motor's own mounting pattern",
+        "knee_bolt": "cap screw ISO 4762 - M4 x 45 - 8.8; nut ISO 4032 - M4 - 8; clamps the whole knee",
     }.items():
         assert notes[name] == note, name

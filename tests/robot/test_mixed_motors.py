@@ -109,7 +109,9 @@ def test_each_driver_carries_its_own_motor(hip, knee):
     boards = {part.name: part for unit in robot.units for part in unit.parts if part.role is Role.ELECTRONICS}
     for joint, motor in (("hip", hip), ("knee", knee)):
         alone = build_robot(PAPER_CASES["C"].design, map_for(motor)).leg.of(joint)
-        assert boards[f"{joint}_driver"].note == f"motor driver {alone.driver.name}, bare board{alone.driver_note}"
+        assert boards[f"{joint}_driver"].described == "; ".join(
+            filter(None, (f"motor driver {alone.driver.name}, bare board", alone.driver_note))
+        )
         assert float(boards[f"{joint}_driver"].mass_kg()) == pytest.approx(alone.driver.mass_kg)
 
 

@@ -17,6 +17,7 @@ from pareto_monoped.strength.gears import (
     static_torques_n_m,
     strike_life_jumps,
     strike_torques_n_m,
+    struck_safeties,
 )
 from pareto_monoped.strength.joint import loads_of
 from tests.actuator.rating import iso6336
@@ -77,6 +78,9 @@ def test_struck_in_every_jump_at_its_limit_a_gear_has_exactly_the_safety_of_its_
     (torque,) = strike_torques_n_m([s])
     assert struck_safety(s, torque, s.settings.parts.duty.jumps) == pytest.approx(1.0, rel=2e-4)
     assert strike_life_jumps(s, torque) == pytest.approx(s.settings.parts.duty.jumps, rel=1e-4)
+    flank, root = struck_safeties(s, torque)
+    data = s.settings.parts.rating
+    assert min(flank / data.flank_safety, root / data.root_safety) == pytest.approx(1.0, rel=2e-4)
 
 
 @pytest.mark.parametrize(("ratio", "share"), [(4.0, 1.5), (6.0, 1.4), (7.5, 1.6), (8.4, 1.5)])
@@ -88,6 +92,9 @@ def test_gears_have_the_safety_of_their_duty_until_their_life_ends(ratio, share)
     # A ring that is nitrided has the steepest curve: a safety that is 2e-4 off moves its life by 0.4 percent.
     assert struck_safety(s, torque, jumps) == pytest.approx(1.0, rel=2e-4)
     assert struck_safety(s, torque, 1.1 * jumps) < 1.0 < struck_safety(s, torque, 0.9 * jumps)
+    flank, root = struck_safeties(s, torque, jumps)
+    data = s.settings.parts.rating
+    assert min(flank / data.flank_safety, root / data.root_safety) == pytest.approx(1.0, rel=2e-4)
 
 
 def test_strikes_are_worse_in_every_jump_than_once_and_the_worse_the_more_jumps():
@@ -136,6 +143,13 @@ def test_a_design_is_told_how_long_its_gears_last(case, calibration):
     # The life ends before the duty where the safety is below 1, and only then there is something to say.
     assert (life.jumps < life.duty_jumps) == (result.measures["gear_strike_safety"] < 1.0) == bool(life.advice)
     assert "\n" not in life.advice
+    short = (life.flank_safety / life.asked[0], life.root_safety / life.asked[1])
+    assert (min(short) < 1.0) == bool(life.advice)
+    if case == "nominal":  # whose knee strikes harder than the duty's highest level, as the slow rating needs it
+        knee = structure(actuator_map, result.design.knee_ratio)
+        torque = float(loads["peak_gear_torque_knee_n_m"][0])
+        assert min(short) == pytest.approx(struck_safety(knee, torque, life.duty_jumps), rel=2e-4)
+    assert all(f"{value:.2f} against" in life.advice for value in (life.flank_safety, life.root_safety) if life.advice)
     assert ("gear_strike_safety" in life.advice) == (case == "nominal")
 
 
@@ -152,7 +166,10 @@ def test_rules_without_fatigue_know_no_life():
 
 
 def test_lives_are_told_with_two_digits():
-    told = [GearLife(jumps=jumps, duty_jumps=1e5).text for jumps in (0.0, 7.3, 7864.8, 142127.0, MOST_JUMPS)]
+    told = [
+        GearLife(jumps=jumps, duty_jumps=1e5, flank_safety=1.0, root_safety=1.0, asked=(1.1, 1.4)).text
+        for jumps in (0.0, 7.3, 7864.8, 142127.0, MOST_JUMPS)
+    ]
     assert told == ["0", "7", "7900", "140000", "1e+09 or more"]
 
 

@@ -26,6 +26,7 @@ from pareto_monoped.cad.drawing.assembly_views import (
     drawn,
     leg_section,
     outline_of,
+    overall,
     side_view,
     to_view,
     within,
@@ -39,13 +40,17 @@ from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.geometry.roles import Role, Visibility
 
 _ITEMS = 99  # rows of the list of items in one column
-_CLEAR_MM2 = 12.0  # area on paper of a region that a balloon's leader is sure to find (our own choice)
+_CLEAR_MM2 = 60.0  # least area on paper of a region with a balloon on the first sheet (our own choice)
 _SECTION_SCALE = 1.0
 _ABOVE_MM, _BELOW_MM = 130.0, 110.0
 """How far the hip's section reaches above and below its axis; the knee's reaches as far as 70 mm either way."""
 _KNEE_MM = 70.0
 _CAPTION_MM = 3.5
-_NOTES = ("The numbers are the rows of bom.csv.", "The sheets that follow show every item.")
+_NOTES = (
+    "The numbers are the rows of bom.csv.",
+    "Large items have balloons here; the sheets that follow show every item.",
+    "Overall dimensions are those of the view, without cables.",
+)
 _EXPLODED_SCALE = 0.5  # at most: heads of M3 are then 2.8 mm wide
 _NO_WIDTH = (0.0, 1.0)  # what lies behind a part in the view is pulled apart from it too
 _CABLE_MM, _CORNER_MM = 0.7, 2.5
@@ -80,16 +85,17 @@ def _views(side: Sequence[Seen], cuts: Sequence[tuple[str, list[Seen]]], scale: 
     """Return side view, and the sections below each other; each item has its balloon where it is seen best."""
     pointed: dict[int, int] = {}
     shown = [(side, scale), *((seen, _SECTION_SCALE) for _, seen in cuts)]
-    for least in (_CLEAR_MM2, 0.0):
-        for k, (seen, at) in enumerate(shown):
-            for item, area in areas(seen).items():
-                if area * at**2 > least:
-                    pointed.setdefault(item, k)
+    for k, (seen, at) in enumerate(shown):
+        for item, area in areas(seen).items():
+            if area * at**2 > _CLEAR_MM2:
+                pointed.setdefault(item, k)
     papers = []
     captions = [f"Side view, {scale_text(scale)}", *(f"{name}, {scale_text(_SECTION_SCALE)}" for name, _ in cuts)]
     for k, (seen, at) in enumerate(shown):
         paper = drawn(seen, at)
+        extent = paper.box()
         balloons(paper, seen, at, [item for item, view in pointed.items() if view == k])
+        overall(paper, extent, at, high=k == 0)
         left, _, right, top = paper.box()
         paper.text(captions[k], 0.5 * (left + right), top + 6.0, height_mm=_CAPTION_MM, align="centre")
         papers.append(paper)

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from pareto_monoped.cad.assembly import Pose, body_frames
-from pareto_monoped.cad.drawing.dimension import spread
+from pareto_monoped.cad.drawing.bores import number
+from pareto_monoped.cad.drawing.dimension import GAP_MM, OVERSHOOT_MM, spread
 from pareto_monoped.cad.drawing.paper import NARROW_MM, Paper
 from pareto_monoped.cad.drawing.profile import polygons
 from pareto_monoped.cad.drawing.section import hatch
@@ -37,6 +38,7 @@ FROM_FRONT = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 FROM_FRONT_LYING = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
 """The same turned by a right angle: the joints' axes are upright, the leg points to the right."""
 
+_OVERALL_MM = 7.0  # from a view to its overall dimensions
 _CAPTION_MM = 3.5  # height of the names of views
 BALLOON_MM = 4.0  #: Radius of an item's balloon.
 _PITCH_MM = 9.5
@@ -49,6 +51,7 @@ _CROSSING_MM = 1000.0  # length of leader that one crossing less is worth (our o
 _ROUNDS = 4
 
 Point = tuple[float, float]
+Box = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -108,6 +111,24 @@ def drawn(seen: Sequence[Seen], scale: float) -> Paper:
         if one.cut:
             hatch(paper, region, falling=one.item % 2 == 1)
     return paper
+
+
+def overall(paper: Paper, extent: Box, scale: float, *, high: bool) -> None:
+    """Dimension how wide a view is, and how high if asked, beyond its balloons; ``extent`` is its box without them."""
+    (left, low, right, top), (outer, floor, _, _) = extent, paper.box()
+    y, x = floor - _OVERALL_MM, outer - _OVERALL_MM
+    for at, way in ((left, -1.0), (right, 1.0)):
+        paper.line([(at, floor - GAP_MM), (at, y - OVERSHOOT_MM)])
+        paper.arrow(at, y, (way, 0.0))
+    paper.line([(left, y), (right, y)])
+    paper.text(number(round((right - left) / scale, 1)), 0.5 * (left + right), y + 1.0, align="centre")
+    if not high:
+        return
+    for at, way in ((low, -1.0), (top, 1.0)):
+        paper.line([(outer - GAP_MM, at), (x - OVERSHOOT_MM, at)])
+        paper.arrow(x, at, (0.0, way))
+    paper.line([(x, low), (x, top)])
+    paper.text(number(round((top - low) / scale, 1)), x - 1.0, 0.5 * (low + top), align="centre", upward=True)
 
 
 def within(seen: Sequence[Seen], low_mm: float, high_mm: float) -> list[Seen]:

@@ -15,7 +15,7 @@ from functools import lru_cache
 import numpy as np
 
 from pareto_monoped.cad.drawing.bores import number
-from pareto_monoped.cad.drawing.dimension import FRAME_MM, datum, frame
+from pareto_monoped.cad.drawing.dimension import DATUM, FRAME_MM, SECOND, datum, datum_fit, datum_letters, frame
 from pareto_monoped.cad.drawing.paper import LETTER_MM, Paper, width_mm
 from pareto_monoped.geometry.chains import deviations
 from pareto_monoped.geometry.gears import DEDENDUM, FILLET, ExternalGear, InternalGear
@@ -32,7 +32,6 @@ from pareto_monoped.geometry.making import (
 )
 
 _PIN_MODULES = 1.68  # diameter of measuring pins over module, so that they touch near the pitch circle (DIN 3960)
-DATUM, _SECOND = "A", "B"
 _SEAT_RA, _FIT_RA, _RACEWAY_RA = "0.8", "1.6", f"{RACEWAY_RA_UM:g}"
 """Arithmetical mean height in micrometres: bearing makers ask 0.8 of seats up to 80 mm, and 1.6 suffices elsewhere."""
 _COAXIAL = "Ø0.02"
@@ -41,6 +40,8 @@ _SQUARE = "0.02"
 """Zone of the faces that locate a part along its axis. Makers of bearings ask run-out of shoulders of IT5 to IT6:
 13 to 19 micrometres at 50 to 80 mm."""
 _SHOULDERS = "shoulders"
+_TIP_EDGE = "-0.05 / 0"
+"""The general edges of the title block would take half of a small tooth's tip: ours is a tenth of the least module."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -166,10 +167,17 @@ def _making_rows(making: ToothMaking, hardness: str) -> list[tuple[str, str]]:
         ("Hardness of flanks", hardness),
         ("Hardness of the core", making.core_hardness),
         *([(layer[making.layer], making.layer_text)] if making.layer else []),
-        *([("Crowning of the flanks", f"{making.crowning_um:g} µm")] if making.crowning_um else []),
+        *([("Active diameters", _from_to(making.active_mm))] if making.active_mm else []),
+        ("Tip relief", "none"),
+        ("Tip edges (ISO 13715)", _TIP_EDGE),
+        ("Crowning of the flanks", f"{making.crowning_um:g} µm" if making.crowning_um else "none"),
         ("Roughness of flanks, fillets", f"Rz {making.flank_rz_um:g}, {making.root_rz_um:g} µm at most"),
         ("Radial runout to the datum axis", f"{making.runout_mm:.3f} at most"),
     ]
+
+
+def _from_to(ends_mm: tuple[float, float]) -> str:
+    return " to ".join(number(round(end, 3)) for end in ends_mm)
 
 
 @lru_cache(maxsize=256)
@@ -184,12 +192,6 @@ def _inverse_involute(value: float) -> float:
     return angle
 
 
-def datum_fit(fits: Sequence[Fit]) -> Fit | None:
-    """Return the fit whose axis positions refer to: the largest seat, or the largest of all."""
-    seats = [fit for fit in fits if fit.seat] or list(fits)
-    return max(seats, key=lambda fit: float(fit.diameter_mm), default=None)
-
-
 def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
     """Return a row per fit, and one for the faces square to the datum's axis if it carries a bearing.
 
@@ -200,12 +202,11 @@ def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
         return None
     first = datum_fit(fits)
     located = any(fit is first and fit.seat and single for fit, single in zip(fits, alone, strict=True))
-    # A shaft with two seats turns about the axis of both.
-    seats = [fit for fit, single in zip(fits, alone, strict=True) if single and fit.seat and fit.zone[0].islower()]
-    second = next((fit for fit in seats if fit is not first), None) if first in seats else None
-    axis = DATUM if second is None else f"{DATUM}-{_SECOND}"
+    letters = datum_letters(fits, alone)
+    second = SECOND in letters
+    axis = f"{DATUM}-{SECOND}" if second else DATUM
     names = [*(f"Ø{fit.text}" for fit in fits), *([_SHOULDERS] if located else [])]
-    widths = [max(width_mm(name, LETTER_MM) for name in names) + 3.0, 30.0, 16.0, 34.0 if second is None else 44.0]
+    widths = [max(width_mm(name, LETTER_MM) for name in names) + 3.0, 30.0, 16.0, 44.0 if second else 34.0]
     high = FRAME_MM + 2.0
     paper = Paper()
     top = high * (len(names) + 1)
@@ -222,8 +223,8 @@ def fit_table(fits: Sequence[Fit], alone: Sequence[bool]) -> Paper | None:
         finish = _RACEWAY_RA if fit.raceway else _SEAT_RA if fit.seat else _FIT_RA
         paper.text(finish, sum(widths[:2]) + 1.5, y + 0.5 * (high - LETTER_MM))
         x = sum(widths[:3]) + 1.5
-        letter = DATUM if fit is first else _SECOND if fit is second else ""
-        if letter and single:
+        letter = letters[k]
+        if letter:
             datum(paper, letter, x, y + 1.0)
             x += FRAME_MM + 1.0
         if single and axis != letter:

@@ -13,6 +13,7 @@ import shapely
 from numpy.typing import NDArray
 
 from pareto_monoped.cad.drawing.paper import ARROW_MM, LETTER_MM, Align, Label, Paper, width_mm
+from pareto_monoped.geometry.making import Fit
 
 Floats = NDArray[np.float64]
 Side = Literal["below", "above", "left", "right"]
@@ -23,10 +24,12 @@ FIRST_MM, PITCH_MM = 9.0, 7.0
 """From the outline to the first dimension line, and from line to line (ISO 129-1: not less than about 10 and 7)."""
 SLOT_MM = 4.2  #: Least distance of parallel texts of 2.5 mm.
 _BESIDE_MM = 1.2  # from an upright dimension line to its text, which stands clear of the arrows
+_ROW_MM = 3.0  # from the texts of lengths to those of diameters and chamfers
 _JOG_MM, _TAIL_MM = 3.0, 1.5
 _TICK_MM = 1.2
 _ORIGIN_MM = 0.9
 FRAME_MM = 5.0  #: Height of a tolerance frame: twice the lettering's (ISO 1101).
+DATUM, SECOND = "A", "B"  #: Letters of datums.
 _NEAR_MM = 4.0  # names that stand off farther have a leader
 _REACHES_MM = np.array([1.0, 2.0, 3.5, 5, 7, 9, 12, 15, 19, 24, 30, 38, 48, 60, 80, 110, 150])
 _ANGLES = np.radians([45.0, 135, 225, 315, 0, 90, 180, 270, 22.5, 67.5, 112.5, 157.5, 202.5, 247.5, 292.5, 337.5])
@@ -76,8 +79,12 @@ def ladder(paper: Paper, marks: Sequence[Mark], side: Side, level: float, *, ori
     def point(along: float, across: float) -> tuple[float, float]:
         return (along, across) if flat else (across, along)
 
-    bend, tail = level + outwards * _JOG_MM, level + outwards * (_JOG_MM + _TAIL_MM)
+    bend, near = level + outwards * _JOG_MM, level + outwards * (_JOG_MM + _TAIL_MM)
+    # What is no length stands in a row of its own, beyond the lengths.
+    lengths = [width_mm(mark.text, LETTER_MM) for mark in ordered if not mark.leader]
+    beyond = near + outwards * (max(lengths) + _ROW_MM if lengths else 0.0)
     for mark, place in zip(ordered, places, strict=True):
+        tail = beyond if mark.leader else near
         begin = mark.start if mark.leader else mark.start + outwards * GAP_MM
         paper.line([point(mark.at, begin), point(mark.at, level), point(place, bend), point(place, tail)])
         if mark.leader:
@@ -121,12 +128,20 @@ def across(paper: Paper, x: float, half: float, text: str, *, edge: float) -> No
 
 
 def callout(
-    paper: Paper, lines: Sequence[str], x: float, y: float, tip: tuple[float, float], *, place: str | None = None
+    paper: Paper,
+    lines: Sequence[str],
+    x: float,
+    y: float,
+    tip: tuple[float, float],
+    *,
+    place: Sequence[str] = (),
+    letter: str = "",
 ) -> None:
     """Write text beside a shelf, with a leader to a feature.
 
     The first line stands on the shelf, whose left end is (x, y); the leader ends at ``tip``. ``place`` is a tolerance
-    of position and its datum, such as ``Ø0.1 A``, drawn as a frame below the text.
+    of position and its datum, drawn as a frame below the text. ``letter`` is the datum that the
+    feature itself is.
     """
     long = max(width_mm(line, LETTER_MM) for line in lines)
     paper.line([tip, (x - 3.0, y), (x + long + 1.0, y)])
@@ -135,10 +150,14 @@ def callout(
     for k, line in enumerate(lines[1:], 1):
         paper.text(line, x, y - k * 4.0 + 0.4)
     if place:
-        frame(paper, ["position", *place.split()], x, y - len(lines) * 4.0 - 1.8)
+        low = y - len(lines) * 4.0 - 1.8
+        wide = frame(paper, ["position", *place], x, low)
+        if letter:
+            paper.line([(x + wide, low + 0.5 * FRAME_MM), (x + wide + 3.0, low + 0.5 * FRAME_MM)])
+            datum(paper, letter, x + wide + 3.0, low)
 
 
-def callout_height(lines: Sequence[str], place: str | None) -> float:
+def callout_height(lines: Sequence[str], place: Sequence[str]) -> float:
     """Return the distance from the top of a callout to the top of the next one."""
     return 4.0 * len(lines) + (6.0 if place else 0.0) + 3.0
 
@@ -176,6 +195,38 @@ def datum(paper: Paper, letter: str, x: float, y: float) -> None:
     """Draw a datum's letter in its box (ISO 5459), with the lower left corner at (x, y)."""
     paper.line(np.array([(x, y), (x + FRAME_MM, y), (x + FRAME_MM, y + FRAME_MM), (x, y + FRAME_MM)]), closed=True)
     paper.text(letter, x + 0.5 * FRAME_MM, y + 0.5 * (FRAME_MM - LETTER_MM), align="centre")
+
+
+def datum_fit(fits: Sequence[Fit]) -> Fit | None:
+    """Return the fit whose axis positions refer to: the largest seat, or the largest of all."""
+    seats = [fit for fit in fits if fit.seat] or list(fits)
+    return max(seats, key=lambda fit: float(fit.diameter_mm), default=None)
+
+
+def datum_letters(fits: Sequence[Fit], alone: Sequence[bool]) -> list[str]:
+    """Return the datum that each fit's face is; '' for others. ``alone`` is as for ``fit_table``."""
+    first = datum_fit(fits)
+    # A shaft with two seats turns about the axis of both.
+    seats = [fit for fit, single in zip(fits, alone, strict=True) if single and fit.seat and fit.zone[0].islower()]
+    second = next((fit for fit in seats if fit is not first), None) if first in seats else None
+    return [
+        DATUM if single and fit is first else SECOND if fit is second else ""
+        for fit, single in zip(fits, alone, strict=True)
+    ]
+
+
+def datum_below(paper: Paper, letter: str, x: float, y: float, lines: Sequence[float]) -> None:
+    """Draw a datum's triangle below the extension line at (x, y) of the dimension whose axis it is, and its letter.
+
+    The letter's box keeps clear of other extension lines, which are at the heights ``lines``.
+    """
+    top = y - 4.0
+    for line in sorted(lines, reverse=True):
+        if top - FRAME_MM - 1.0 < line < top + 1.0:
+            top = line - 1.5
+    paper.fill(np.array([(x - 1.2, y), (x + 1.2, y), (x, y - 2.1)]))
+    paper.line([(x, y - 2.1), (x, top)])
+    datum(paper, letter, x - 0.5 * FRAME_MM, top - FRAME_MM)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass
 from functools import lru_cache
 from typing import Any
 
+from pareto_monoped import __date__
 from pareto_monoped.cad.drawing.assembly_sheets import assembly_sheet, cable_sheet, exploded_sheets
 from pareto_monoped.cad.drawing.bores import number as _number
 from pareto_monoped.cad.drawing.paper import CAPITAL, Fill, Label, Paper, Stroke
@@ -109,7 +110,10 @@ class Origin:
 
 
 def origin_of(record: Mapping[str, Any]) -> Origin:
-    """Return what title blocks take from the record of an export, which may still lack what is computed last."""
+    """Return what title blocks take from the record of an export, which may still lack what is computed last.
+
+    The date is that of the study, or of the program's version: never of the clock, so that exports can be repeated.
+    """
     source = record["source"]
     name = (
         f"case {source['case']}"
@@ -119,7 +123,7 @@ def origin_of(record: Mapping[str, Any]) -> Origin:
     return Origin(
         design=", ".join(filter(None, (name, record["motor"], record.get("rules", "paper")))),
         digest=record["design_hash"],
-        date=str(source.get("date", "")),
+        date=str(source.get("date", __date__)),
         maker=record["made_by"],
     )
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.cad.drawing.bores import Bore, number
-from pareto_monoped.cad.drawing.dimension import callout, callout_height
+from pareto_monoped.cad.drawing.dimension import DATUM, callout, callout_height
 from pareto_monoped.cad.drawing.paper import CHAIN, DASHED, SOLID, TIMES, WIDE_MM, Paper
 from pareto_monoped.cad.drawing.profile import seen, visible_circles
 from pareto_monoped.cad.drawing.section import RoundPart
@@ -99,11 +99,16 @@ def _pointed(bores: Sequence[Bore], scale: float, from_above: bool) -> list[NDAr
 
 
 def _callouts(paper: Paper, part: RoundPart, scale: float, datum: str | None, outer: float) -> None:
+    # Without a seat, the first fitted pattern is the datum of the others.
+    fitted = [bore for bore in part.bores if bore.fit is not None and bore.count > 1 and bore.place_mm is not None]
+    own = fitted[0] if datum is None and fitted else None
     entries = [
         (
             bore,
             bore_lines(bore, from_above=part.from_above, far_side=not (bore.through or _visible(part, bore))),
-            " ".join(filter(None, (f"Ø{number(bore.place_mm)}", datum))) if bore.place_mm is not None else None,
+            ()
+            if bore.place_mm is None
+            else (f"Ø{number(bore.place_mm)}", *filter(None, (datum or (DATUM if own and bore is not own else None),))),
         )
         for bore in part.bores
     ]
@@ -117,5 +122,5 @@ def _callouts(paper: Paper, part: RoundPart, scale: float, datum: str | None, ou
         centre = pointed[k]
         towards = np.array([x - 3.0, y]) - centre
         tip = centre + bore.radius * scale * towards / np.hypot(*towards)
-        callout(paper, lines, x, y, (float(tip[0]), float(tip[1])), place=place)
+        callout(paper, lines, x, y, (float(tip[0]), float(tip[1])), place=place, letter=DATUM if bore is own else "")
         y -= callout_height(lines, place) - 4.0

@@ -4,7 +4,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from pareto_monoped.cad.drawing.bores import bores, chamfer_text, number
-from pareto_monoped.cad.drawing.data_tables import DATUM, datum_fit, fit_table, gear_rows, length_rows
+from pareto_monoped.cad.drawing.data_tables import fit_table, gear_rows, length_rows
+from pareto_monoped.cad.drawing.dimension import DATUM, datum_fit
 from pareto_monoped.cad.drawing.end_view import end_view, sees_more_from_above
 from pareto_monoped.cad.drawing.paper import Paper
 from pareto_monoped.cad.drawing.plan import plan_of

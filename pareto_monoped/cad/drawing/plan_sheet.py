@@ -4,6 +4,7 @@ The views have edges, numbered nodes and lettered holes.
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from string import ascii_uppercase
 
 import numpy as np
@@ -12,14 +13,24 @@ from shapely.geometry import box
 from shapely.geometry.base import BaseGeometry
 
 from pareto_monoped.cad.drawing.bores import Bore, chamfer_text, number
-from pareto_monoped.cad.drawing.data_tables import DATUM, datum_fit, fit_table
-from pareto_monoped.cad.drawing.dimension import Mark, Tag, ladder, place_tags
+from pareto_monoped.cad.drawing.data_tables import fit_table
+from pareto_monoped.cad.drawing.dimension import (
+    DATUM,
+    FRAME_MM,
+    SECOND,
+    Mark,
+    Tag,
+    datum,
+    datum_fit,
+    ladder,
+    place_tags,
+)
 from pareto_monoped.cad.drawing.end_view import draw_bore
 from pareto_monoped.cad.drawing.paper import DASHED, LETTER_MM, NARROW_MM, TIMES, WIDE_MM, Paper
 from pareto_monoped.cad.drawing.plan import Layer, Plan, cut_along, is_square, nodes, repeats, rounded_rectangle
 from pareto_monoped.cad.drawing.profile import polygons
 from pareto_monoped.cad.drawing.section import hatch
-from pareto_monoped.cad.drawing.sheet import table
+from pareto_monoped.cad.drawing.sheet import SCALES, scale_text, table
 from pareto_monoped.cad.shape.outlines import Contour, polygon
 from pareto_monoped.geometry.features import ShaftEnd
 from pareto_monoped.geometry.making import Fit
@@ -29,10 +40,19 @@ from pareto_monoped.geometry.shapes import Arc, Pattern
 _NODE_MM = 1.8  # height of the numbers of nodes (ISO 3098-1, the smallest size)
 _LADDER_MM = 6.0
 _DEPTH_MM = 18.0  # how far a ladder of lengths may reach below where it begins: ten digits
-_LETTER = "A"
+_LETTER = "S"  # of the section, and of no datum
 _AXIS_MM = 9.0  # length of the arrows of the origin's axes
 _SAME_MM = 1e-6
+_DETAIL = "Z"
+_UNREADABLE = "IORSW"  # letters like figures, and those of bosses, section and windows
+_NEAR_MM, _MANY = 4.0, 8
+"""Holes with less than twice this distance on paper stand close together; so many of them make a detail view."""
+_WIDE_MM = 120.0  # width of a detail
+_APART_MM = 8.0  # from a view to its detail
 _ROWS = 34  # rows of a table before it goes on beside itself
+
+
+Circle = tuple[float, float, float]  #: x and y of its centre, and its radius
 
 
 def plan_view(plan: Plan, scale: float) -> Paper:
@@ -168,8 +188,82 @@ def plan_views(plan: Plan, scale: float, tags: Sequence[Tag]) -> list[Paper]:
     cut = _has_section(plan)
     if cut:
         section_marks(above, plan, scale)
-    place_tags(above, [*axis_tags(scale), *tags], scale)
+    crowd = _crowd(plan, scale)
+    near = [tag for tag in tags if crowd is not None and tag.height_mm == LETTER_MM and _inside(tag, crowd)]
+    if crowd is not None:
+        x, y, radius = (scale * value for value in crowd)
+        above.circle(x, y, radius)
+        tags = [*(tag for tag in tags if tag not in near), _tag(_DETAIL, crowd[0], crowd[1], crowd[2])]
+    _place_names(above, [*axis_tags(scale), *tags], scale)
+    if crowd is not None:
+        above = _with_detail(above, _detail(plan, crowd, _larger(scale, crowd[2]), near))
     return [above, section_at(plan, scale)] if cut else [above]
+
+
+def _larger(scale: float, radius_mm: float) -> float:
+    """Return the largest scale at which a detail is not too wide, or else the next one above the view's."""
+    found = [other for other in SCALES if other > scale and 2.0 * radius_mm * other <= _WIDE_MM]
+    return max(found, default=min(other for other in SCALES if other > scale))
+
+
+def _crowd(plan: Plan, scale: float) -> Circle | None:
+    """Return centre and radius around the holes that stand too close together on paper for their names, if any do.
+
+    A sheet at full size or above shows all of them well enough.
+    """
+    if scale >= 1.0:
+        return None
+    discs = [shapely.Point(x, y).buffer(bore.radius + _NEAR_MM / scale) for bore in plan.bores for x, y in bore.centres]
+    groups = [group for group in polygons(shapely.union_all(discs)) if sum(map(group.intersects, discs)) >= _MANY]
+    if not groups:
+        return None
+    found = max(groups, key=lambda group: sum(map(group.intersects, discs)))
+    circle = shapely.minimum_bounding_circle(found)
+    return circle.centroid.x, circle.centroid.y, shapely.minimum_bounding_radius(found)
+
+
+def _inside(tag: Tag, crowd: Circle) -> bool:
+    return bool(np.hypot(tag.x - crowd[0], tag.y - crowd[1]) < crowd[2])
+
+
+def _detail(plan: Plan, crowd: Circle, scale: float, tags: Sequence[Tag]) -> Paper:
+    """Return what is within a circle of the view from above at a larger scale, with its names."""
+    x, y, radius = (scale * value for value in crowd)
+    disc = shapely.Point(x, y).buffer(radius, quad_segs=64)
+    whole, paper = plan_view(plan, scale), Paper()
+    for stroke in whole.strokes:
+        line = shapely.LinearRing(stroke.points) if stroke.closed else shapely.LineString(stroke.points)
+        _lines(paper, line.intersection(disc), stroke.width_mm, stroke.dashes)
+    paper.fills += [fill for fill in whole.fills if disc.contains(shapely.Polygon(fill.points))]
+    paper.circle(x, y, radius)
+    _place_names(paper, tags, scale)
+    top = paper.box()[3]
+    paper.text(f"{_DETAIL}, {scale_text(scale)}", x, top + 3.0, height_mm=3.5, align="centre")
+    return paper
+
+
+def _with_detail(view: Paper, detail: Paper) -> Paper:
+    """Return a view and its detail below or beside it, where they take less room; the middle stands at y = 0."""
+    (left, low, right, high), (x0, y0, x1, y1) = view.box(), detail.box()
+    both = Paper()
+    if right - left > high - low:
+        middle = 0.5 * (high + low - (y1 - y0) - _APART_MM)
+        both.lay(view, 0.0, -middle)
+        both.lay(detail, 0.5 * (left + right) - 0.5 * (x0 + x1), low - _APART_MM - y1 - middle)
+    else:
+        both.lay(view, 0.0, -0.5 * (low + high))
+        both.lay(detail, right + _APART_MM - x0, -0.5 * (y0 + y1))
+    return both
+
+
+def _place_names(paper: Paper, tags: Sequence[Tag], scale: float) -> None:
+    """Write names on a view; that of a datum stands in its frame, which is placed first as it takes more room."""
+    datums = [tag for tag in tags if tag.text == DATUM]
+    place_tags(paper, [replace(tag, height_mm=FRAME_MM) for tag in datums], scale)
+    for _ in datums:
+        x0, y0, x1, y1 = paper.labels.pop().box()
+        datum(paper, DATUM, 0.5 * (x0 + x1 - FRAME_MM), 0.5 * (y0 + y1 - FRAME_MM))
+    place_tags(paper, [tag for tag in tags if tag.text != DATUM], scale)
 
 
 def _has_section(plan: Plan) -> bool:
@@ -183,7 +277,7 @@ def plan_tables(plan: Plan, part: Part) -> tuple[list[Paper], list[Tag]]:
     alone = [any(fit.holds(diameter) for diameter in around) for fit in part.fits]
     first = datum_fit(part.fits)
     axis = first is not None and alone[part.fits.index(first)]
-    hole_rows, tags = _hole_rows(plan, DATUM if axis else None)
+    hole_rows, tags = _hole_rows(plan, first if axis else None)
     contour_rows, window_rows, node_tags = _contour_rows(plan, part)
     fits = fit_table(part.fits, alone)
     tables = [] if fits is None else [fits]
@@ -200,11 +294,17 @@ def plan_tables(plan: Plan, part: Part) -> tuple[list[Paper], list[Tag]]:
 
 
 def _around(plan: Plan) -> Iterator[float]:
-    """Yield radii of the single round faces around an axis: bosses, and bores that belong to no pattern."""
+    """Yield radii of the single round faces around an axis: bosses, and bores of which there are no others.
+
+    Several alike beside each other have no common axis.
+    """
     for layer in plan.layers:
         if layer.outline.circle is not None:
             yield float(layer.outline.circle.radius_mm)
-    yield from (bore.radius for bore in plan.bores if bore.count == 1)
+    for bore in plan.bores:
+        alike = [other for other in plan.bores if other.radius == bore.radius]
+        if bore.count == 1 and all(other.centres == bore.centres for other in alike):
+            yield bore.radius
 
 
 def plan_notes(plan: Plan, part: Part) -> Iterator[str]:
@@ -230,20 +330,36 @@ def _tables(title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> l
     return [table(title if k == 0 else f"{title}, continued", head, part) for k, part in enumerate(parts)]
 
 
-def _hole_rows(plan: Plan, datum: str | None) -> tuple[list[tuple[str, ...]], list[Tag]]:
-    """Return a row per hole or pattern: holes of one kind share a letter; ``datum`` is what positions refer to."""
+def _hole_rows(plan: Plan, axis: Fit | None) -> tuple[list[tuple[str, ...]], list[Tag]]:
+    """Return a row per hole or pattern, and names: holes of one kind share a letter, which is none of a datum.
+
+    Positions refer to the axis of the fit ``axis``. Without one, the first circle of fitted holes is the datum.
+    """
+    fitted = [bore for bore in plan.bores if bore.fit is not None and bore.count > 1 and bore.place_mm is not None]
+    pattern = fitted[0] if axis is None and fitted else None
     kinds: dict[str, list[Bore]] = {}
     for bore in plan.bores:
         kinds.setdefault(_kind(bore), []).append(bore)
     rows: list[tuple[str, ...]] = []
     tags: list[Tag] = []
-    for letter, (kind, members) in zip(ascii_uppercase, kinds.items(), strict=False):
+    for bore in [pattern] if pattern is not None else plan.bores:
+        if bore is pattern or (axis is not None and bore.count == 1 and axis.holds(2.0 * bore.radius)):
+            tags.append(_tag(DATUM, *min(bore.centres, key=lambda centre: (centre[0], centre[1])), bore.radius))
+            break
+    circles = [layer.outline.circle for layer in plan.layers if layer.outline.circle is not None and not tags]
+    for circle in [one for one in circles if axis is not None and axis.holds(2.0 * float(one.radius_mm))][:1]:
+        tags.append(_tag(DATUM, float(circle.x_mm), float(circle.y_mm), float(circle.radius_mm)))
+    letters = (letter for letter in ascii_uppercase if letter not in (DATUM, SECOND, _DETAIL, *_UNREADABLE))
+    for letter, (kind, members) in zip(letters, kinds.items(), strict=False):
         for k, bore in enumerate(members, 1):
             name = f"{letter}{k}" if len(members) > 1 else letter
             x, y = float(bore.shape.x_mm), float(bore.shape.y_mm)
             zone = f"Ø{number(bore.place_mm)}" if bore.place_mm is not None else ""
-            place = f"{zone} {datum}" if zone and datum else zone
-            rows.append((name, kind, number(x), number(y), place))
+            if zone and bore is pattern:
+                zone = f"{zone}, datum {DATUM}"
+            elif zone and (axis is not None or pattern is not None):
+                zone = f"{zone} {DATUM}"
+            rows.append((name, kind, number(x), number(y), zone))
             rightmost = int(np.argmax(np.round([x + 0.1 * y for x, y in bore.centres], 6)))
             tags.append(_tag(name, *bore.centres[rightmost], bore.radius))
     return rows, tags

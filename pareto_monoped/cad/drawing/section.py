@@ -11,7 +11,16 @@ from shapely.geometry import Polygon, box
 from shapely.geometry.base import BaseGeometry
 
 from pareto_monoped.cad.drawing.bores import Bore, chamfer_text, number
-from pareto_monoped.cad.drawing.dimension import FIRST_MM, PITCH_MM, Mark, across, fits_between, ladder
+from pareto_monoped.cad.drawing.dimension import (
+    FIRST_MM,
+    PITCH_MM,
+    Mark,
+    across,
+    datum_below,
+    datum_letters,
+    fits_between,
+    ladder,
+)
 from pareto_monoped.cad.drawing.paper import CHAIN, WIDE_MM, Paper
 from pareto_monoped.cad.drawing.profile import (
     Cylinder,
@@ -242,11 +251,16 @@ def _diameters(paper: Paper, part: RoundPart, x_of: _Along, scale: float, ends: 
         else:
             to_right, edge = found
             sides[to_right].append((radius, edge))
+    alone = [any(fit.holds(2.0 * c.radius) for c in cylinders(part.body)) for fit in part.fits]
+    letters = zip(part.fits, datum_letters(part.fits, alone), strict=True)
+    datums = {round(0.5 * float(fit.diameter_mm), 6): letter for fit, letter in letters}
     for to_right, members in sides.items():
         for k, (radius, edge) in enumerate(members):
             outwards = FIRST_MM + k * PITCH_MM
             x = ends[1] + outwards if to_right else ends[0] - outwards
             across(paper, x, radius * scale, diameter_text(radius, part.fits), edge=edge)
+            if letter := datums.get(round(radius, 6)):
+                datum_below(paper, letter, x, -radius * scale, [-r * scale for r, _ in members if r > radius])
     return leaders
 
 

@@ -176,7 +176,7 @@ def _title_block(paper: Paper, size: Size, scale: float, title: Title, number: s
     x0, y0 = size.width_mm - MARGIN_MM - TITLE_MM[0], MARGIN_MM
     rows: tuple[tuple[tuple[float, str, str], ...], ...] = (
         ((80.0, "Name", title.name), (70.0, "Drawing", title.number), (30.0, "Sheet", f"{size.name}   {number}")),
-        ((80.0, "Design", title.design), (35.0, "Design hash", title.digest), (35.0, "Date of the design", title.date),
+        ((80.0, "Design", title.design), (35.0, "Design hash", title.digest), (35.0, "Date", title.date),
          (30.0, "Made by", title.maker)),
         ((64.0, "Material", title.material), (34.0, "Hardness", title.hardness), (20.0, "Mass of one", title.mass),
          (12.0, "Count", str(title.count)), (50.0, "Process", title.process)),

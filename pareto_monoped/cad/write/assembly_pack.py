@@ -142,8 +142,12 @@ def _page(
     yield from _cables(product)
     yield "<h2>To buy</h2><p>The same as a table for a spreadsheet: <a href='hardware.csv'>hardware.csv</a>.</p>"
     yield from _table(
-        ("kind", "designation", "standard", "count"),
-        ((item.kind, item.designation, item.standard or "-", str(item.count)) for item in items(product)),
+        ("kind", "designation", "or", "count"),
+        (
+            (o.kind, o.designation, "; ".join(o.alternatives) or "-", f"{item.amount} {o.unit}")
+            for item in items(product)
+            for o in (item.order,)
+        ),
     )
     yield from _printing(product, foot)
     yield "</html>"
@@ -178,9 +182,9 @@ def _addition(addition: Addition, blocking: Blocking) -> str:
 def _fastener(body: int, blocking: Blocking) -> str:
     part, name = blocking.bodies[body].instance.part, _counted(body, blocking)
     if part.role not in FASTENERS:
-        return f"Snap {escape(name)} into its groove: {escape(part.note)}."
+        return f"Snap {escape(name)} into its groove: {escape(part.described)}."
     torque, lock = tightening(part)
-    return f"Drive {escape(name)}, {escape(part.note)}: {escape(torque)}, {escape(lock)}."
+    return f"Drive {escape(name)}, {escape(part.described)}: {escape(torque)}, {escape(lock)}."
 
 
 def _listed(members: Sequence[int], blocking: Blocking) -> str:
@@ -198,12 +202,12 @@ def _screws(product: Listed) -> Iterator[tuple[str, ...]]:
         if unique.part.role in FASTENERS:
             torque, lock = tightening(unique.part)
             where = ", ".join(unit.replace("_", " ") for unit in unique.units)
-            text = f"{unique.name.replace('_', ' ')}: {unique.part.note}"
+            text = f"{unique.name.replace('_', ' ')}: {unique.part.described}"
             yield text, str(unique.count), where, torque, lock
 
 
 def _chain(product: Listed) -> Iterator[str]:
-    notes = [u.part.note for u in product.unique if u.part.role is Role.TURNBUCKLE]
+    notes = [u.part.described for u in product.unique if u.part.role is Role.TURNBUCKLE]
     span_mm = 1000.0 * product.robot.design.thigh_length_m
     yield "<h2>Chain</h2><ol>"
     yield (

@@ -152,7 +152,7 @@ on this stand (`model/jump_stand.json`), and {own} under the calibration of this
 |---:|---|---|
 | 2 | `arm.dxf`: {part.note}, {part.grade.name if part.grade else ""} | outside of either cheek |
 | 4 | carriage {MGN12H.name} (HIWIN, series MGN), preload Z0, oiled | two on the outside of each arm |
-| 2 | rail {MGN12H.name.removesuffix("H")}, as long as the jump and {high - low + MGN12H.length_mm:.0f} mm | vertical |
+| 2 | rail {MGN12H.rail}, as long as the jump and {high - low + MGN12H.length_mm:.0f} mm | vertical |
 | 16 | {carriage_screw()} | through the arms into the carriages |
 {screws}
 

@@ -58,7 +58,10 @@ FILES: Mapping[str, tuple[tuple[str, str], ...]] = {
     ),
     "assembly": (
         ("assembly/index.html", "how the robot is put together: steps, torques, chain, cables, printing, casting"),
-        ("assembly/hardware.csv", "what is bought: designations, standards, counts, lengths of cables"),
+        (
+            "assembly/hardware.csv",
+            "what is bought: designations, alternatives, counts, adhesives, grease, cables",
+        ),
         ("assembly/cables.csv", "where the cables run: every corner, bend radius, cut length, ties"),
         ("assembly/", "the pictures of the steps, and the mould for the foot"),
     ),

@@ -136,7 +136,10 @@ def _strength(record: Mapping[str, Any], factors: Sequence[JointFactor], life: G
     if life is not None:
         yield (
             f"Gears that are struck in every jump as in this one have the safety of their duty for {life.text} jumps; "
-            f"the duty is {life.duty_jumps:.0f}. This informs, and nothing is refused for it."
+            f"the duty is {life.duty_jumps:.0f}. Struck in all of these, they have a safety of {life.safeties}. This "
+            "informs, and nothing is refused for it. The rows `gear_flank` and `gear_root` above say something else: "
+            "how much larger a torque may be that comes once, against static strength. `gear_strikes` is the torque "
+            "that the gears carry in every jump of their duty, with its safety, over that of this one."
         )
         yield from (f"{life.advice[0].upper()}{life.advice[1:]}.", "") if life.advice else ("",)
 

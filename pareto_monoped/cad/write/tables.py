@@ -5,10 +5,10 @@ What is bought: ``hardware.csv``, one row per designation, the torques of screws
 """
 
 import json
-import re
+import math
 from collections import defaultdict
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -19,8 +19,8 @@ from pareto_monoped.cad.product import Listed, Product, part_file_name
 from pareto_monoped.cad.write.folder import csv_text
 from pareto_monoped.geometry.chains import Chain
 from pareto_monoped.geometry.parts import Part
-from pareto_monoped.geometry.roles import FASTENERS, Role
-from pareto_monoped.geometry.tightening import LOCKER
+from pareto_monoped.geometry.roles import SOLID_UNITS, Purchase
+from pareto_monoped.geometry.tightening import LOCK
 from pareto_monoped.robot.cost import part_cost
 from pareto_monoped.strength.factors import JointFactor
 from pareto_monoped.strength.joint import ActuatorJoint
@@ -115,7 +115,7 @@ def _note(part: Part) -> str:
         f"ISO 1328-1 class {accuracy}" if accuracy else "",
         *(one.text for one in part.teeth),
         *(fit.text for fit in part.fits),
-        part.note,
+        part.described,
         part.joint.text if part.joint else "",
     )
     return "; ".join(filter(None, words))
@@ -158,46 +158,50 @@ def checks_record(checks: Sequence[Check]) -> str:
     return json.dumps(rows, indent=2) + "\n"
 
 
-_STANDARD = re.compile(r"(?:ISO|DIN)(?:/[A-Z]+)? \d+(?:-\d+)?")
-_COLUMNS = ("kind", "designation", "standard", "count", "used_for", "remark")
+_COLUMNS = ("kind", "designation", "standard", "alternatives", "count", "unit", "solids", "used_for", "remark")
 _CABLE_COLUMNS = (
     *("cable", "from", "to", "wires", "designation", "diameter_mm", "bend_radius_mm", "least_bend_radius_mm"),
     *("path_mm", "cut_mm", "mass_not_counted_g", "corner", "x_mm", "y_mm", "z_mm", "what", "warning"),
 )
-_BOUGHT_ROUGH = frozenset({Role.SPROCKET})
-"""Parts that are bought and then worked on, if their designation is that of a standard."""
 
 
 @dataclass(slots=True, kw_only=True)
 class Item:
     """What is bought under one designation."""
 
-    kind: str  #: role of the parts
-    designation: str  #: what to order
-    standard: str  #: that it follows; '' without one
-    count: int  #: how many
-    parts: list[str]  #: the parts that it becomes
-    remarks: list[str]  #: what else the parts list says about them
+    order: Purchase  #: of one instance
+    count: float = 0.0  #: in the order's unit, for the whole robot
+    solids: int = 0  #: bought solids of the assembly that it becomes, together with other items or alone
+    parts: list[str] = field(default_factory=list)  #: names of the parts that it is for
+    remarks: list[str] = field(default_factory=list)  #: what is done with it
+
+    @property
+    def amount(self) -> str:
+        """The count as written in tables: whole units, rounded up."""
+        return f"{math.ceil(self.count - 1e-9):d}"
 
 
 def items(product: Listed) -> list[Item]:
     """Return everything that is bought, equal designations together, by kind and in the order of the assembly."""
     found: dict[tuple[str, str], Item] = {}
     for unique in product.unique:
-        part = unique.part
-        if part.process != "bought" and part.role not in _BOUGHT_ROUGH:
-            continue
-        designation, remark = _split(part)
-        if part.process != "bought" and not _STANDARD.search(designation):
-            continue  # cut from solid
-        kind, standard = part.role.value, ", ".join(_STANDARD.findall(designation))
-        new = Item(kind=kind, designation=designation, standard=standard, count=0, parts=[], remarks=[])
-        item = found.setdefault((kind, designation), new)
-        item.count += unique.count
-        item.parts.append(unique.name)
-        if remark and remark not in item.remarks:
-            item.remarks.append(remark)
-    return sorted(found.values(), key=lambda item: item.kind)
+        for order in _orders(unique.part):
+            item = found.setdefault((order.kind, order.designation), Item(order=order))
+            item.count = 1.0 if order.unit == "pack" else item.count + order.count * unique.count
+            item.solids += unique.count if unique.part.process == "bought" and order.unit in SOLID_UNITS else 0
+            item.parts.append(unique.name)
+            if order.remark and order.remark not in item.remarks:
+                item.remarks.append(order.remark)
+    return sorted(found.values(), key=lambda item: item.order.kind)
+
+
+def _orders(part: Part) -> Iterator[Purchase]:
+    """Yield what a part is bought as, and what holds it."""
+    yield from part.purchases
+    if part.joint is not None and part.joint.adhesive is not None:
+        yield part.joint.adhesive
+    if part.fastening is not None:
+        yield LOCK
 
 
 def by_designation(product: Listed) -> dict[str, list[Cable]]:
@@ -212,17 +216,17 @@ def hardware(product: Listed) -> str:
     """Return the purchasing list as CSV."""
     rows: list[tuple[object, ...]] = []
     for item in items(product):
-        parts, remarks = " ".join(item.parts), "; ".join(item.remarks)
-        rows.append((item.kind, item.designation, item.standard, item.count, parts, remarks))
+        order, parts, remarks = item.order, " ".join(item.parts), "; ".join(item.remarks)
+        others = "; ".join(order.alternatives)
+        bought = (order.kind, order.designation, order.standard, others, item.amount, order.unit, item.solids or "")
+        rows.append((*bought, parts, remarks))
     for designation, made in by_designation(product).items():
         lengths = ", ".join(f"{c.name} {c.wires} x {c.cut_mm:g} mm" for c in made)
         total_m = 1e-3 * sum(c.wires * c.cut_mm for c in made)
-        names = " ".join(c.name for c in made)
-        rows.append(("cable", designation, "", sum(c.wires for c in made), names, f"{lengths}; {total_m:.2f} m"))
+        count, names = sum(c.wires for c in made), " ".join(c.name for c in made)
+        rows.append(("cable", designation, "", "", count, "piece", "", names, f"{lengths}; {total_m:.2f} m"))
     ties = sum(cable.notes.count(TIE) for made in by_designation(product).values() for cable in made)
-    rows.append(("cable", TIE_DESIGNATION, "", ties, "driver plates", ""))
-    locked = sum(unique.count for unique in product.unique if unique.part.role in FASTENERS)
-    rows.append(("consumable", LOCKER, "", 1, f"{locked} screws and bolts", "10 ml"))
+    rows.append(("cable", TIE_DESIGNATION, "", "", ties, "piece", "", "driver plates", ""))
     return csv_text(_COLUMNS, rows)
 
 
@@ -230,18 +234,6 @@ def tightening(part: Part) -> tuple[str, str]:
     """Return torque in N m and lock of a fastener, as written in tables."""
     assert part.fastening is not None
     return f"{part.fastening.torque_n_m:.1f} N m", part.fastening.lock
-
-
-def _split(part: Part) -> tuple[str, str]:
-    """Return what to order, the first clause of a part's note with the sizes that belong to it, and the rest."""
-    head, _, rest = part.note.partition("; ")
-    # A size such as "6804, 20 x 32 x 7 mm (ISO 15)" belongs to the designation.
-    clauses = head.split(", ")
-    take = 1
-    while take < len(clauses) and (clauses[take][:1].isdigit() or clauses[take].startswith("round bar")):
-        take += 1
-    designation = ", ".join(clauses[:take]) or part.material.name
-    return designation, "; ".join(filter(None, (", ".join(clauses[take:]), rest)))
 
 
 def cables_csv(product: Listed) -> str:

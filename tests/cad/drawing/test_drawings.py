@@ -71,13 +71,28 @@ def test_the_assembly_lists_its_items_in_the_order_of_the_parts_list(product, dr
     assert (page.width_mm, page.height_mm) == pytest.approx((841.0, 594.0), abs=1e-3)
 
 
-def test_each_item_has_at_most_one_balloon_and_most_have_one(product, drawn):
-    page, *_ = pages(drawn)
-    numbers = [text for text, x, _ in page.texts if text.isdigit() and x < 500.0]
-    balloons = [text for text in numbers if int(text) <= len(product.unique)]
-    assert len(balloons) == len(set(balloons))
-    # Screws beside the planes of both sections are hidden in every view.
-    assert len(balloons) > 0.55 * len(product.unique)
+def test_the_first_sheet_has_one_balloon_for_each_of_few_items(product):
+    """Small items have theirs on the exploded sheets, so that leaders can be followed here."""
+    paper, *_ = assembly_sheet(product)
+    circles = [shapely.Polygon(s.points) for s in paper.strokes if s.closed and len(s.points) > 2]
+    middles = [circle.centroid for circle in circles if _is_balloon(circle)]
+    numbers = [
+        label.text
+        for label in paper.labels
+        if label.text.isdigit() and any(np.hypot(label.x - at.x, label.y + 1.25 - at.y) < 0.1 for at in middles)
+    ]
+    assert len(numbers) == len(middles) == len(set(numbers))
+    assert 20 < len(numbers) < 0.5 * len(product.unique)
+
+
+def test_the_first_sheet_says_how_high_the_robot_is(product):
+    paper, *_ = assembly_sheet(product)
+    points = np.concatenate(
+        [unique.mesh.points_mm @ i.world[:3, :3].T + i.world[:3, 3] for i, unique in product.placed()]
+    )
+    said = {label.text for label in paper.labels}
+    for axis in (0, 2):
+        assert f"{np.ptp(points[:, axis]):.1f}".rstrip("0").rstrip(".") in said
 
 
 def test_the_exploded_sheets_number_every_item_once(product, drawn):

@@ -182,4 +182,50 @@ def test_only_planets_are_crowned():
             texts = [label.text for paper in round_tables(part, round_part(part)) for label in paper.labels]
             name = "Crowning of the flanks"
             crowned[part.name] = texts[texts.index(name) + 1] if name in texts else None
-    assert crowned == {"sun": None, "planet": "5 µm", "ring": None}
+    assert crowned == {"sun": "none", "planet": "5 µm", "ring": "none"}
+
+
+def touching_mm(own, mate, own_at, mate_at):
+    """Diameter of a gear's flank at which the mate's tip comes: where its circle meets the line of action.
+
+    That line runs through the pitch point, which divides the axes' distance by the numbers of teeth, and touches the
+    gear's base circle.
+    """
+    inside = isinstance(own, InternalGear) or isinstance(mate, InternalGear)
+    share = own.teeth / (own.teeth - mate.teeth if inside else own.teeth + mate.teeth)
+    pitch = own_at + share * (mate_at - own_at)
+    out = (pitch - own_at) / np.linalg.norm(pitch - own_at)
+    base = 0.5 * own.module_mm * own.teeth * np.cos(own.pressure_angle_rad)
+    turn = np.arcsin(base / np.linalg.norm(pitch - own_at))
+    found = []
+    for angle in (turn, -turn):
+        way = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]) @ out
+        to = pitch - mate_at
+        steps = np.roots([1.0, 2.0 * way @ to, to @ to - float(mate.tip_radius_mm) ** 2])
+        step = float(min(steps, key=abs))
+        found.append(2.0 * float(np.linalg.norm(pitch + step * way - own_at)))
+    assert found[0] == pytest.approx(found[1])
+    return found[0]
+
+
+@pytest.mark.parametrize("ratio", [4.0, 6.0, 8.4])
+def test_active_diameters_are_where_the_mates_tips_come(ratio):
+    actuator = map_for("VT8020", "iso6336").lookup(ratio)
+    gears = actuator.gears
+    axis, beside = np.zeros(2), np.array([float(gears.carrier_radius_mm), 0.0])
+    sun, planet, ring = gears.sun(), gears.planet(), gears.ring()
+    expected = {
+        "sun": touching_mm(sun, planet, axis, beside),
+        "planet": min(touching_mm(planet, sun, beside, axis), touching_mm(planet, ring, beside, axis)),
+        "ring": touching_mm(ring, planet, axis, beside),
+    }
+    for part in actuator.parts:
+        if part.name in expected:
+            (making, *_) = part.teeth
+            shape = {"sun": sun, "planet": planet, "ring": ring}[part.name]
+            ends = sorted((2.0 * float(shape.tip_radius_mm), expected[part.name]))
+            assert making.active_mm == pytest.approx(ends, abs=1e-9)
+            # The involute reaches as far as it is used.
+            used = ends[1] if part.name == "ring" else ends[0]
+            beyond = 2.0 * float(shape.form_radius_mm) - used
+            assert beyond >= 0.0 if part.name == "ring" else beyond <= 0.0

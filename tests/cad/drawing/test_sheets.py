@@ -115,6 +115,56 @@ def test_positions_refer_to_the_axis_that_the_fits_name(sheets):
     assert with_datum >= 2
 
 
+def test_every_position_refers_to_a_datum_that_the_views_show(sheets):
+    """The letter of a datum is no hole's name, and stands in a frame outside of all tables, too."""
+    shown = 0
+    for part, paper, _, _ in sheets:
+        said = [label.text for label in paper.labels]
+        tolerances = [text for text in said if text.startswith(("Ø0.02", "Ø0.1")) and text.endswith((" A", "datum A"))]
+        if not any(hole.place_mm is not None and hole.fit is not None for hole in bores(part, on_axis=True)):
+            continue
+        squares = [s.points for s in paper.strokes if s.closed and np.ptp(s.points, axis=0) == pytest.approx(FRAME_MM)]
+        framed = [
+            label
+            for label in paper.labels
+            if label.text == "A" and any(np.all(np.abs(p.mean(axis=0) - _middle(label)) < 1.0) for p in squares)
+        ]
+        table = next((label for label in paper.labels if label.text == "Fits (ISO 286-2)"), None)
+        assert framed, part.name
+        assert len(framed) == said.count("A"), part.name
+        assert any(table is None or label.x < table.x - 5.0 for label in framed), part.name
+        shown += bool(tolerances)
+    assert shown >= 3
+
+
+def _middle(label):
+    x0, _, x1, _ = label.box()
+    return np.array([0.5 * (x0 + x1), label.y + 0.5 * label.height_mm])
+
+
+def test_plates_with_many_holes_have_a_detail_with_their_names(sheets):
+    details = 0
+    for part, paper, _, scale in sheets:
+        said = Counter(label.text for label in paper.labels)
+        captions = [text for text in said if text.startswith("Z, ")]
+        if captions:
+            details += 1
+            assert said["Z"] == 1, part.name
+            assert [text for text in captions if SCALES[0] >= _scale(text) > scale] == captions
+            # A circle around the crowd in the view, and one around its detail.
+            ratio = _scale(captions[0]) / scale
+            widths = sorted(np.ptp(s.points[:, 0]) for s in paper.strokes if s.closed and len(s.points) > 20)
+            assert any(abs(large / small - ratio) < 0.02 for small in widths for large in widths if large > small), (
+                part.name
+            )
+    assert details >= 1
+
+
+def _scale(caption):
+    one, other = caption.removeprefix("Z, ").split(":")
+    return float(one) / float(other)
+
+
 def test_no_line_crosses_the_title_block_or_the_frame(sheets):
     for part, paper, size, _ in sheets:
         corner = (size.width_mm - MARGIN_MM - TITLE_MM[0], MARGIN_MM + TITLE_MM[1])

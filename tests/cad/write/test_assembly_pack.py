@@ -41,21 +41,45 @@ def test_every_screw_has_a_torque_and_a_lock(pack, product):
     assert sum(int(row[1]) for row in rows) == sum(u.count for u in product.unique if u.part.role in FASTENERS)
 
 
-def test_the_purchasing_list_has_everything_that_is_bought_once(pack, product):
+def test_the_purchasing_list_has_every_solid_that_is_bought(pack, product):
     rows = rows_of(pack)
-    chain = product.robot.leg.chain.name
-    rough = [u.part.name for u in product.unique if u.part.role is Role.SPROCKET and u.part.note.startswith(chain)]
-    assert rough
-    bought = [u for u in product.unique if u.part.process == "bought" or u.part.name in rough]
-    listed = [row for row in rows if row["kind"] not in ("consumable", "cable")]
-    assert sum(int(row["count"]) for row in listed) == sum(unique.count for unique in bought)
-    assert sorted(name for row in listed for name in row["used_for"].split()) == sorted(u.name for u in bought)
-    assert len({(row["kind"], row["designation"]) for row in rows}) == len(rows)
-    kinds = {row["kind"] for row in rows}
-    assert {"bearing", "chain", "sprocket", "screw", "motor rotor", "motor stator", "electronics"} <= kinds
+    counts = {unique.name: unique.count for unique in product.unique}
+    bought = {unique.name for unique in product.unique if unique.part.process == "bought"}
+    listed = [row for row in rows if row["solids"]]
+    assert {name for row in listed for name in row["used_for"].split()} == bought
     for row in listed:
-        if row["kind"] in ("screw", "bearing", "chain", "sprocket"):
+        assert int(row["solids"]) == sum(counts[name] for name in row["used_for"].split()), row
+    assert len({(row["kind"], row["designation"]) for row in rows}) == len(rows)
+    for row in listed:
+        if row["kind"] in ("screw", "bearing", "chain", "retaining ring", "pin", "needle roller", "washer"):
             assert row["standard"], row
+        several = {"needle roller": 15, "rubber": 28, "motor": 0.5}.get(row["kind"], 1)
+        assert float(row["count"]) == several * int(row["solids"]), row
+
+
+def test_the_purchasing_list_can_be_ordered(pack, product):
+    rows = {row["designation"]: row for row in rows_of(pack)}
+    kinds = {row["kind"] for row in rows.values()}
+    assert {
+        "adhesive",
+        "bearing",
+        "chain",
+        "grease",
+        "magnet",
+        "motor",
+        "needle roller",
+        "nut",
+        "pin",
+        "screw",
+    } <= kinds
+    bonded = {u.name for u in product.unique if u.part.joint is not None and "bonded" in u.part.joint.how}
+    assert bonded
+    glued = {name for row in rows.values() if row["kind"] == "adhesive" for name in row["used_for"].split()}
+    assert bonded <= glued
+    assert rows["NSK 6804VVC3, 20 x 32 x 7 mm"]["alternatives"] == "NTN 6804LLB/C3; SKF 61804-2RZ/C3"
+    grease = next(row for row in rows.values() if row["kind"] == "grease")
+    assert grease["unit"] == "g"
+    assert 1 <= int(grease["count"]) <= 10
 
 
 def test_the_mould_is_watertight_and_its_cavity_is_the_foot_without_its_pocket(product):
