@@ -13,10 +13,10 @@ from pareto_monoped.actuator.motors import load_motor as motor_of
 from pareto_monoped.actuator.motors import motor_source, motor_values, stored_motor
 from pareto_monoped.actuator.ratiomap import ActuatorMap, JointMaps
 from pareto_monoped.actuator.search import map_of
-from pareto_monoped.api.given import one_design, own_calibration, renamed, with_motors
+from pareto_monoped.api.given import one_design, own_calibration, renamed, truth_of, with_motors
 from pareto_monoped.compute.chunks import cores
 from pareto_monoped.definition.given import count_of
-from pareto_monoped.design import DEFAULT_RULES, PAPER_MOTOR, Design, RuleSet, control_of, table_of
+from pareto_monoped.design import DEFAULT_RULES, PAPER_MOTOR, Design, RuleSet, control_of, designs_of, table_of
 from pareto_monoped.errors import CalibrationError, DesignError, MotorError, complaint
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.calibration import load_calibration as calibration_of
@@ -151,6 +151,7 @@ def simulate(
     calibration: AnyCalibration = DEFAULT,
     controller: AnyController | None = None,
     rules: RuleSet | None = None,
+    landing: bool = False,
     workers: int | None = None,
 ) -> "DataFrame":
     """Let designs jump, and measure it.
@@ -167,6 +168,7 @@ def simulate(
         controller: what the motors are told, by its name or as the table ``[controller]`` of a study file, such as
             ``{"kind": "torque_over_time", "knots": 8}``, or an ``OwnLaw``; by default that of the calibration.
         rules: of the gearboxes; by default those that go with the calibration.
+        landing: whether they also land; adds ``landing_ok`` and what ``LandingMeasures`` names to the columns.
         workers: number of threads, all cores if None. It does not change the results.
 
     Returns:
@@ -189,7 +191,15 @@ def simulate(
     model, chosen = calibrated(calibration, rules)
     maps = joint_maps_of(motor, hip_motor, knee_motor, chosen)
     designs, model, slots = _controlled(designs, model, controller)
-    return jumps_of(with_motors(designs, maps), [maps], model, workers).rename(columns=slots)
+    found = jumps_of(with_motors(designs, maps), [maps], model, workers)
+    if truth_of("landing", landing):
+        from pareto_monoped.jump.landing import landed
+        from pareto_monoped.measures import LANDING_MEASURES
+
+        landings = landed(designs_of(found), maps, model)
+        for name in ("landing_ok", *(one.name for one in LANDING_MEASURES)):
+            found[name] = getattr(landings, name)
+    return found.rename(columns=slots)
 
 
 def _controlled(

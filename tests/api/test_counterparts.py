@@ -87,6 +87,7 @@ REASONS_OF_COMMAND = {
     ("actuators", "--figure"): "plot_actuators returns the figure",
     ("actuators", "--force"): "nothing is written",
     ("simulate", "--json"): _VALUES,
+    ("simulate", "--hops"): "a course of one robot, for the terminal; jump.landing.hops makes it",
     ("simulate", "--trace"): "the function trace",
     ("simulate", "--model"): "export(..., formats=['mjcf']) writes it with the parts' shapes",
     ("simulate", "--view"): "a window, which belongs to a terminal",

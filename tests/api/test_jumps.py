@@ -85,3 +85,12 @@ def test_a_robot_has_the_mass_that_jumps(jumps):
     assert pm.build_robot(C).mass_kg == pytest.approx(jumps["mass_kg"].iloc[-1], rel=1e-9)
     both = pm.build_robot(C, hip_motor="U8")
     assert both.mass_kg == pytest.approx(pm.simulate(C, hip_motor="U8")["mass_kg"][0], rel=1e-9)
+
+
+def test_a_landing_is_that_of_the_command(capsys):
+    (row,) = pm.simulate(pm.PAPER_CASES["C"].design, landing=True).to_dict(orient="records")
+    assert cli(["simulate", "--case", "C", "--landing", "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)["landing"]
+    assert row["landing_ok"] is said["landing_ok"] is False
+    assert row["landing_peak_foot_force_n"] == pytest.approx(said["landing_peak_foot_force_n"], rel=1e-12)
+    assert row["height_m"] == pm.simulate(pm.PAPER_CASES["C"].design)["height_m"][0]
