@@ -14,8 +14,8 @@ def test_the_parts_list_has_the_end_stops(product):
         assert row["made_or_bought"] == "bought"
         assert row["material"] == "fluoroelastomer"
         bar_mm = 28 if "knee" in row["part"] else 20
-        assert row["note"].startswith(f"FKM 75 Shore A, round bar {bar_mm} mm, cut to 28 mm; bonded to the floor of ")
-        assert row["note"].split()[-1] in rows
+        assert row["note"].startswith(f"round bar FKM 75 Shore A, {bar_mm} mm, cut to 28 mm; bonded to the floor of ")
+        assert row["note"].partition(" the floor of ")[2].split()[0] in rows
         assert row["size_mm"].endswith(" x 28.0")
     for name, unit, count in (
         ("knee_seat_extension", "thigh", 1),

@@ -177,7 +177,7 @@ def test_the_check_names_what_is_loose(product):
     assert retention.check(product.robot).passed
 
 
-def test_every_screw_has_a_catalogue_length_that_its_note_tells(robot):
+def test_every_screw_has_a_catalogue_length_that_is_ordered(robot):
     """Length as bought: under the head, or over all where it is flush."""
     seen = 0
     for unit in robot.units:
@@ -189,6 +189,7 @@ def test_every_screw_has_a_catalogue_length_that_its_note_tells(robot):
             shank_mm = 2.0 * np.sqrt(areas[1] / np.pi)
             length = sum(float(p.z1_mm - p.z0_mm) for p in part.prisms if p not in heads)
             assert length == pytest.approx(LENGTHS_MM[abs(LENGTHS_MM - length).argmin()]), part.name
-            assert part.note.startswith(f"M{shank_mm:g} x {length:g} "), part.note
+            (bought,) = part.purchases
+            assert f" - M{shank_mm:g} x {length:g} - " in bought.designation, bought
             seen += 1
     assert seen >= 17
