@@ -43,7 +43,7 @@ from pareto_monoped.strength.groups import REQUIRED_MEASURES
 LAW = TorqueOverTime(kind="torque_over_time", knots=MOST_KNOTS)
 """What is searched: cubics through as many knots as a profile can have."""
 JUMPS = 3000
-"""Jumps of each of the four searches of a design. Our own choice: 10 to 20 s per design on two cores."""
+"""Jumps of each of the four searches of a design. Our own choice: 15 s per design on two quiet cores."""
 MOST_DESIGNS = 12
 """Designs of a front, thinned evenly, if none are named. Our own choice: some minutes on two cores."""
 _POPULATION, _FEW = 12, 6
