@@ -43,7 +43,7 @@ class Stored(limit._Hardware):
         super().__init__(design, map_for("VT8020"), calibration, energy, 2)
         self.robot = robot
         self.own = evaluate_robots(robot, control_of(design[None]), calibration)
-        self.told = limit._point_of(told_profiles(robot, control_of(design[None]), calibration, limit.LAW)[0])
+        self.told = self.point_of(told_profiles(robot, control_of(design[None]), calibration, limit.LAW)[0])
 
     def jumps_of(self, points: Floats, calibration: Calibration) -> Evaluations:
         """Let the robot jump with profiles."""

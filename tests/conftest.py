@@ -17,7 +17,7 @@ from hypothesis import settings
 
 # The machine is shared: how long one example takes says nothing about the code.
 settings.register_profile("shared_machine", deadline=None)
-settings.register_profile("every_time", deadline=None, max_examples=50)
+settings.register_profile("every_time", deadline=None, max_examples=25)
 settings.load_profile("shared_machine")
 
 TOGETHER = {

@@ -172,10 +172,10 @@ def _is_single(value: Numbers) -> bool:
     return getattr(value, "ndim", 0) == 0
 
 
-def output_holes(settings: ActuatorSettings, radius_mm: float = M3.core) -> Pattern:
+def output_holes(settings: ActuatorSettings) -> Pattern:
     """Return the bolt pattern of the output flange."""
     data = settings.parts.interface
-    return Pattern(radius_mm=radius_mm, pitch_radius_mm=0.5 * data.output_bolt_circle_mm, count=data.output_bolt_count)
+    return Pattern(radius_mm=M3.core, pitch_radius_mm=0.5 * data.output_bolt_circle_mm, count=data.output_bolt_count)
 
 
 def output_dowel_holes(settings: ActuatorSettings) -> Pattern:
@@ -188,8 +188,9 @@ def casing_dowel_holes(at: Layout, settings: ActuatorSettings) -> Pattern:
     return Dowel(diameter_mm=settings.parts.interface.mount_dowel_mm).between(casing_holes(at, settings))
 
 
-def casing_holes(at: Layout, settings: ActuatorSettings, radius_mm: float = M3.core) -> Pattern:
-    """Return the bolt pattern of the mounting face, and of the backplate on the casing."""
+def casing_holes(at: Layout, settings: ActuatorSettings, radius_mm: float | None = None) -> Pattern:
+    """Return the bolt pattern of the mounting face, and of the backplate on the casing; by default for threads."""
+    radius_mm = M3.core if radius_mm is None else radius_mm
     return Pattern(radius_mm=radius_mm, pitch_radius_mm=at.r_bolts, count=settings.parts.interface.mount_bolt_count)
 
 

@@ -1,6 +1,6 @@
 """What is computed from stored studies: alternatives, robustness, sensitivity, limits, verification.
 
-Order of imports, lowest first: alternatives, at_bounds, compare, limit, rail_legs, robustness, verify; remarks,
+Order of imports, lowest first: alternatives, at_bounds, compare, rail_legs, robustness, verify; limit, remarks,
 sensitivity; choices.
 """
 

@@ -64,7 +64,7 @@ def robust(
         data = read_study(db)
         uncertainty = uncertainty.where(stand=data.calibration.stand is not None)
         drawn = sobol_samples(uncertainty, samples, seed)
-        rows = _chosen(data, trials)
+        rows = rows_of(data, trials)
         settings = {"uncertainty": uncertainty.as_dict(), "samples": samples, "seed": seed}
         known = {trial: stored.result for trial, stored in read_robustness(db).items() if stored.settings == settings}
         fresh = rows[~rows["trial"].isin(known)]
@@ -118,9 +118,14 @@ def refuse_other_jumps(data: StudyData, rows: pd.DataFrame, evaluator: Evaluator
         )
 
 
-def _chosen(data: StudyData, trials: Sequence[int] | None) -> pd.DataFrame:
+def rows_of(data: StudyData, trials: Sequence[int] | None, front: pd.DataFrame | None = None) -> pd.DataFrame:
+    """Return the rows of some trials that jumped, each once; without any, those of a front, by default the study's.
+
+    Raises:
+        SelectionError: a trial that is not there or did not jump, or an empty front.
+    """
     if trials is None:
-        front = data.front()
+        front = data.front() if front is None else front
         if len(front) == 0:
             raise SelectionError("front: has 0 designs, at least 1 is needed; run the study longer, or name trials")
         return front

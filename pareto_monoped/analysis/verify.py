@@ -12,7 +12,7 @@ from pareto_monoped.errors import DatabaseError
 from pareto_monoped.measures import ENERGIES, MEASURE_NAMES
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.storage.connection import Connection
-from pareto_monoped.storage.extra_rows import read_robustness, read_sensitivity
+from pareto_monoped.storage.extra_rows import read_limits, read_robustness, read_sensitivity
 from pareto_monoped.storage.kept_front import STATES, KeptFront
 from pareto_monoped.storage.optuna_check import foreign_trials, optuna_findings
 from pareto_monoped.storage.place import StudyPlace, storage_of
@@ -118,6 +118,7 @@ def verify(
     data = read_study(db)
     read_robustness(db)
     read_sensitivity(db)
+    read_limits(db)
     with storage_of(db).reading() as connection:
         seals = read_seals(connection, db) if data.sealed else None
         foreign = foreign_trials(connection, len(data.trials), seals)

@@ -16,8 +16,8 @@ from pareto_monoped.errors import InputError, complaint
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from pareto_monoped.analysis.limit import Limit
     from pareto_monoped.analysis.verify import Verification
+    from pareto_monoped.storage.extra_rows import Limit
     from pareto_monoped.uncertainty.settings import Uncertainty
 
 
@@ -242,18 +242,20 @@ def limit(
     study: StoredStudy | StrPath,
     trials: int | Picked | Sequence[int | Picked] | ArrayLike | None = None,
     *,
-    designs: int = 12,
-    jumps: int = 3000,
+    designs: int | None = None,
+    jumps: int | None = None,
     seed: int = 1,
     workers: int | None = None,
 ) -> "DataFrame":
     """Find the least energy and the greatest height of the best torque found with the hardware of designs.
 
+    The results are stored with the study; what is there is not searched again.
+
     Args:
         study: the study or its database.
         trials: a trial or several, such as a column ``trial``; by default the front.
-        designs: most designs of the front, evenly spread over it.
-        jumps: of each of a design's four searches; fewer find less.
+        designs: most designs of the front, evenly spread over it; by default 12.
+        jumps: of each of a design's four searches, by default 3,000; fewer find less.
         seed: of the searches; the same one finds the same.
         workers: threads that simulate, all cores if None. It does not change the results.
 
@@ -261,6 +263,9 @@ def limit(
         One row per trial: ``trial``, ``height_m``, ``energy_j``, ``floor_j`` (which no controller can undercut),
         ``controller_gap`` (percent of the energy that is saved at this height) with ``least_energy_j``, and
         ``greatest_height_m``; the same three with ``_held`` without overloading a part, NaN where none was found.
+        ``tracking_energy_j`` is that of the law ``tracking``, and ``reaches``, ``profile_reaches`` and
+        ``tracking_reaches`` the shares of robots as built within 5 percent of the height by the virtual leg, by the
+        torques over time, and by that law.
 
     Raises:
         SelectionError: a trial that is not there or did not jump, or an empty front.
@@ -269,22 +274,18 @@ def limit(
 
     Example:
         >>> import pareto_monoped as pm
-        >>> found = pm.limit("light.db", pm.load_study("light.db").pick("knee"), jumps=100)
+        >>> found = pm.limit("light.db", pm.load_study("light.db").pick("knee"), jumps=40)
         >>> bool((found["controller_gap"] >= 0).all())
         True
     """
     import pandas as pd
 
-    from pareto_monoped.analysis.limit import chosen, limits
-    from pareto_monoped.storage.reader import read_study
+    from pareto_monoped.analysis.limit import JUMPS, MOST_DESIGNS, chosen, limits
 
     stored = study if isinstance(study, StoredStudy) else load_study(study)
-    most, each = (count_of(name, value) for name, value in (("designs", designs), ("jumps", jumps)))
-    if most is None or each is None:
-        raise InputError("designs, jumps: must be whole numbers of at least 1; correct them")
-    data = read_study(stored.path)
-    rows = chosen(data, data.front(), _numbers(trials) or [], most)
-    found = limits(data, rows, jumps=each, seed=seed_of(seed), workers=count_of("workers", workers))
+    most, each = count_of("designs", designs) or MOST_DESIGNS, count_of("jumps", jumps) or JUMPS
+    rows = chosen(stored.data, stored.data.front(), _numbers(trials) or [], most)
+    found = limits(stored.path, rows, jumps=each, seed=seed_of(seed), workers=count_of("workers", workers))
     return pd.DataFrame([_reached(one) for one in found])
 
 
@@ -296,6 +297,11 @@ def _reached(one: "Limit") -> dict[str, Any]:
         row[f"controller_gap{held}"] = float("nan") if gap is None else gap
         row[f"least_energy{held}_j"] = float("nan") if least is None else least.energy_j
         row[f"greatest_height{held}_m"] = float("nan") if greatest is None else greatest.height_m
+    row["tracking_energy_j"] = float("nan") if one.tracking is None else one.tracking.energy_j
+    jumps = {"": one, "profile_": one.over_time, "tracking_": one.tracking}
+    for name, jump in jumps.items():
+        found = None if jump is None else jump.perturbed
+        row[f"{name}reaches"] = float("nan") if found is None else found.reaches
     return row
 
 

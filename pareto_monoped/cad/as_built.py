@@ -1,17 +1,26 @@
-"""From a searched design to what can be built: whole lengths, real ratios, one leg for both actuators, a pose."""
+"""From a searched design to what can be built: whole lengths, real ratios, one leg for both actuators, a pose.
 
+What was built, what it was made with and what came out stand in its record, ``design.json``, from which an export can
+be made again.
+"""
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from pareto_monoped.actuator.ratiomap import Maps, joint_maps
+from pareto_monoped import __version__
+from pareto_monoped.actuator.actuator import Actuator
+from pareto_monoped.actuator.motors import motor_values
+from pareto_monoped.actuator.ratiomap import JointMaps, Maps, joint_maps
 from pareto_monoped.cad.assembly import Pose
+from pareto_monoped.definition.provenance import digest
 from pareto_monoped.design import Design
 from pareto_monoped.errors import DesignError
-from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.calibration import Calibration, calibration_values
 from pareto_monoped.jump.model import start_pose
-from pareto_monoped.leg.chain_drives import SAFETY
-from pareto_monoped.leg.dimensions import LegDimensions, leg_dimensions
+from pareto_monoped.leg.dimensions import SAFETY, LegDimensions, leg_dimensions
 from pareto_monoped.robot.build import Robot, build_robot
 from pareto_monoped.robot.population import RobotArrays, robot_arrays
 
@@ -93,3 +102,75 @@ def assembly_pose(
     return Pose(
         hip_rad=rest.hip_rad if hip_rad is None else hip_rad, knee_rad=rest.knee_rad if knee_rad is None else knee_rad
     )
+
+
+_DIGITS = 12  # of a design's hash: two of a million designs share one with a probability of 0.2 percent
+MADE_BY = f"pareto-monoped {__version__}"  #: Program and version, as written into every record.
+
+
+def design_record(
+    *,
+    searched: Design,
+    built: Built,
+    maps: JointMaps,
+    calibration: Calibration,
+    source: Mapping[str, Any] | None,
+    formats: Sequence[str],
+    strength: bool,
+) -> dict[str, Any]:
+    """Return the content of ``design.json`` before its jumps are simulated, apart from the list of files."""
+    rules, values = maps.rules, [motor_values(motor) for motor in maps.motors]
+    # Records with one motor hold it alone, as they did before there could be two.
+    motor_data = values[0] if len(values) == 1 else dict(zip(("hip", "knee"), values, strict=True))
+    return {
+        "made_by": MADE_BY,
+        "motor": maps.label,
+        "calibration": calibration.label,
+        # Records made before there were other rules do not name them.
+        **({} if rules == "paper" else {"rules": rules}),
+        "source": dict(source or {}),
+        "searched": searched.as_dict(),
+        "design_hash": digest({"searched": searched.as_dict(), "rules": rules, "motor": motor_data})[:_DIGITS],
+        "as_built": built.design.as_dict(),
+        "jumps": {},
+        "mass_kg": built.robot.mass_kg,
+        "cost_eur": float(built.robot.cost.total_eur),
+        "strength": strength,
+        "pose": {"hip_rad": built.pose.hip_rad, "knee_rad": built.pose.knee_rad},
+        "actuators": {
+            name: _actuator(actuator) | ({"stand_in": note} if (note := maps.of(name).stand_in(ratio)) else {})
+            for name, actuator, ratio in (
+                ("hip", built.robot.hip, searched.hip_ratio),
+                ("knee", built.robot.knee, searched.knee_ratio),
+            )
+        },
+        "formats": list(formats),
+        "motor_data": motor_data,
+        "calibration_data": calibration_values(calibration),
+    }
+
+
+def _actuator(actuator: Actuator) -> dict[str, Any]:
+    """Return gears and figures of an actuator; profile shifts (over the module) and rating only where it has them."""
+    gears, rating = actuator.gears, actuator.rating
+    shifts = {
+        "sun_shift": float(gears.sun_shift),
+        "planet_shift": float(gears.planet_shift),
+        "ring_shift": float(gears.ring_shift),
+        "centre_distance_mm": float(gears.carrier_radius_mm),
+    }
+    return {
+        "family": actuator.family,
+        "sun_teeth": int(gears.sun_teeth),
+        "planet_teeth": int(gears.planet_teeth),
+        "ring_teeth": int(gears.ring_teeth),
+        "module_mm": float(gears.module_mm),
+        "planets": int(gears.planets),
+        **(shifts if gears.is_shifted else {}),
+        "face_width_mm": actuator.face_width_mm,
+        "ratio": actuator.ratio,
+        "mass_kg": actuator.mass_kg,
+        "peak_torque_n_m": actuator.peak_torque_n_m,
+        "length_mm": actuator.length_mm,
+        **({} if rating is None else {"rating": rating.as_dict()}),
+    }

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from pareto_monoped.actuator.ratiomap import Maps, joint_maps
-from pareto_monoped.cad.as_built import built_of
+from pareto_monoped.cad.as_built import built_of, design_record
 from pareto_monoped.cad.check.result import Check
 from pareto_monoped.cad.check.run import run_checks
 from pareto_monoped.cad.drawing.drawings import Origin, origin_of, part_drawings
@@ -24,10 +24,9 @@ from pareto_monoped.cad.picture.drawing import prepare
 from pareto_monoped.cad.product import ListedPart, Product, build_product, step_assembly
 from pareto_monoped.cad.write import files
 from pareto_monoped.cad.write.assembly_pack import assembly_pack
-from pareto_monoped.cad.write.design_record import design_record
 from pareto_monoped.cad.write.folder import RECORD, beside, chosen_formats, files_in, move_in, require_free, safe, write
+from pareto_monoped.cad.write.living import living_model
 from pareto_monoped.cad.write.meshes import visuals
-from pareto_monoped.cad.write.parameters import equations, parameters, parameters_csv
 from pareto_monoped.cad.write.readme import readme
 from pareto_monoped.cad.write.tables import chain_table, checks_record, parts_list, strength_table
 from pareto_monoped.design import LENGTHS, Design
@@ -173,12 +172,13 @@ def export_design(
             files.write_meshes(folder, part_files, other_files, wanted)
             files.write_drawings(folder, product, record, wanted)
             files.write_models(folder, product, shown, built.arrays, built.design, calibration, wanted)
-            dimensions = parameters(product, leg_dimensions(maps))
+            living = living_model(product, maps)
             write(folder, "bom.csv", parts_list(product, factors))
             write(folder, "strength.csv", strength_table(factors))
             write(folder, "tolerances.csv", chain_table(robot_chains(built.robot)))
-            write(folder, "parameters.csv", parameters_csv(dimensions))
-            write(folder, "monoped_equations.txt", equations(dimensions))
+            write(folder, "cad/model.py", living.program)
+            write(folder, "parameters.csv", living.parameters_csv)
+            write(folder, "monoped_equations.txt", living.equations)
             write(folder, "checks.json", checks_record(checks))
             write(folder, "README.md", readme(record, product, checks, record["formats"], factors, life, landing))
             ordered.write(folder)

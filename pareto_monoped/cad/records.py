@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from pareto_monoped.actuator.motors import stored_motor
-from pareto_monoped.cad.as_built import as_built, built_of
+from pareto_monoped.cad.as_built import MADE_BY, as_built, built_of, design_record
 from pareto_monoped.cad.jobs import Job
-from pareto_monoped.cad.write.design_record import MADE_BY, design_record
 from pareto_monoped.cad.write.folder import ALWAYS, FILES, RECORD, chosen_formats
 from pareto_monoped.config import read_json
 from pareto_monoped.design import ALL_NAMES, DEFAULTS, NAMES, RULE_SETS, Design, RuleSet

@@ -230,6 +230,7 @@ def pick(
     from pareto_monoped.analysis.at_bounds import binding_limits
     from pareto_monoped.analysis.choices import better_than, choose, choose_of, dear_words
     from pareto_monoped.pareto.trade_offs import one_more
+    from pareto_monoped.storage.extra_rows import read_limits, read_robustness
     from pareto_monoped.storage.front_reader import read_front
     from pareto_monoped.storage.reader import read_study
 
@@ -238,7 +239,6 @@ def pick(
     compared: RobustTrials | None = None
     if by_robust:
         from pareto_monoped.analysis.robustness import as_built
-        from pareto_monoped.storage.extra_rows import read_robustness
 
         known, compared = as_built(read_study(db), read_robustness(db), notify=note)
         chosen = choose(known, wanted, notify=note)
@@ -251,6 +251,7 @@ def pick(
     limits = binding_limits(chosen.data, picked.trial)
     dear = dear_words(db, rows[rows["trial"] == picked.trial].iloc[0])
     ahead = better_than(rows, picked.trial, data.study.objectives)
+    best = read_limits(db).get(picked.trial)
     others: tuple[Alternative, ...] = ()
     if count:
         others = alternatives(
@@ -270,6 +271,8 @@ def pick(
             more["behind"] = ahead
         if dear:
             more["dear"] = dear
+        if best is not None:
+            more |= {name: getattr(best.result, name) for name in ("controller_gap", "controller_gap_held")}
         if count:
             more["alternatives"] = [other.as_dict() for other in others]
         echo(json.dumps(row | more, indent=2))
@@ -285,6 +288,8 @@ def pick(
         echo(wrapped(dear))
     echo(wrapped(step.text()))
     echo(wrapped(f"limits: {'; '.join(limits) or 'none binds'}"))
+    if best is not None:
+        echo(wrapped(best.result.text()))
     echo(wrapped("landing: left out, the leg is caught at the apex; 'export' says whether the design survives it"))
     if by_robust:
         failed, overloaded = (100.0 * row[name] for name in shares)

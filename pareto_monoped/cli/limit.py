@@ -12,23 +12,15 @@ from pareto_monoped.cli.terminal import echo, note, wrapped
 from pareto_monoped.storage.place import StudyPlace
 
 if TYPE_CHECKING:
-    from pareto_monoped.analysis.limit import Limit, Reached
     from pareto_monoped.pareto.selectors import Condition, MaxEnergy
+    from pareto_monoped.storage.extra_rows import Limit, Perturbed, Reached
 
 _DESIGNS, _JUMPS = 12, 3000  # as ``analysis.limit`` has them; a help text imports no simulator
 
 
 @click.command()
 @click.argument("db", type=options.DATABASE)
-@click.option(
-    "--trial",
-    "trials",
-    type=click.IntRange(min=0),
-    multiple=True,
-    metavar="N",
-    shell_complete=options.trials,
-    help="A trial, instead of the front.",
-)
+@options.trials_option
 @condition_options
 @click.option(
     "--designs",
@@ -65,7 +57,9 @@ def limit(
 
     For designs of the front: the least energy at a design's height, and the greatest height, of motor torques free over
     time within the motors' limits; with and without overloading parts. What is found is reached by a jump; less energy
-    than the floor needs no controller can do.
+    than the floor needs no controller can do. A second table tells what robots as built make of it, and of a law that
+    keeps to the leg's length and speed. The results are stored in DB, for 'pick' and 'report' as well; what is
+    there is not searched again.
     """
     from pareto_monoped.analysis.choices import settled_front
     from pareto_monoped.analysis.limit import chosen, limits
@@ -78,13 +72,13 @@ def limit(
     rows = chosen(data, front, trials, designs)
     if not trials and len(rows) < len(front):
         note(f"{len(rows)} of the front's {len(front)} designs, evenly spread; --designs N takes more")
-    found: list[Limit] = []
     started = time.monotonic()
-    for one in limits(data, rows, jumps=jumps, seed=seed, workers=workers):
-        found.append(one)
-        left = (time.monotonic() - started) / len(found) * (len(rows) - len(found))
-        minutes, seconds = divmod(round(left), 60)
-        echo(f"{len(found)}/{len(rows)} designs, {minutes}:{seconds:02d} left", err=True)
+
+    def progress(done: int, total: int) -> None:
+        minutes, seconds = divmod(round((time.monotonic() - started) / done * (total - done)), 60)
+        echo(f"{done}/{total} designs, {minutes}:{seconds:02d} left", err=True)
+
+    found = limits(db, rows, jumps=jumps, seed=seed, workers=workers, progress=progress)
     if as_json:
         settings = {"jumps": jumps, "seed": seed}
         echo(json.dumps(settings | {"limits": [one.as_dict() for one in found]}, indent=2))
@@ -107,6 +101,34 @@ def _print(found: "list[Limit]") -> None:
             "height; held: no part is overloaded; floor: what no controller can go below"
         )
     )
+    if any(one.perturbed for one in found):
+        _print_as_built(found)
+
+
+def _print_as_built(found: "list[Limit]") -> None:
+    """One row per design: heights of built robots by the virtual leg, the torque found, and the law ``tracking``."""
+    echo(f"\n{'':6} {'virtual leg':>21} {'least over time':>21} {'tracking':>28}")
+    each = f"{'5-95 %, m':>11} {'high':>4} {'hold':>4}"
+    echo(f"{'trial':>6} {each} {each} {'J':>6} {each}")
+    for one in found:
+        tracking = one.tracking
+        energy = f"{'-':>6}" if tracking is None else f"{tracking.energy_j:6.2f}"
+        last = _as_built(None if tracking is None else tracking.perturbed)
+        first = _as_built(one.over_time.perturbed)
+        echo(f"{one.trial:6d} {_as_built(one.perturbed)} {first} {energy} {last}")
+    echo(
+        wrapped(
+            "as built, with other motors, delay and masses: heights of nine robots of ten; high: percent of robots "
+            "within 5 percent of the design's height; hold: percent that overload no part; tracking: torques over "
+            "the leg's length and speed"
+        )
+    )
+
+
+def _as_built(found: "Perturbed | None") -> str:
+    if found is None:
+        return f"{'-':>21}"
+    return f"{found.p05_m:.3f}-{found.p95_m:.3f} {100.0 * found.reaches:4.0f} {100.0 * found.holds:4.0f}"
 
 
 def _energy(reached: "Reached | None") -> str:

@@ -168,6 +168,17 @@ def trials(ctx: "click.Context", _: "click.Parameter", incomplete: str) -> "list
     return [CompletionItem(str(n), help=text) for n, text in known.items() if str(n).startswith(incomplete)]
 
 
+trials_option = click.option(
+    "--trial",
+    "trials",
+    type=click.IntRange(min=0),
+    multiple=True,
+    metavar="N",
+    shell_complete=trials,
+    help="A trial, instead of the front.",
+)
+
+
 motors = _completing(_motors, files=True)
 calibrations = _completing(_calibrations, files=True)
 studies = _completing(_studies)

@@ -23,15 +23,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("db", type=options.DATABASE)
-@click.option(
-    "--trial",
-    "trials",
-    type=click.IntRange(min=0),
-    multiple=True,
-    metavar="N",
-    shell_complete=options.trials,
-    help="A trial, instead of the front.",
-)
+@options.trials_option
 @condition_options
 @click.option(
     "--every", type=click.IntRange(min=1), default=1, metavar="N", help="Only every N-th design of the front."

@@ -15,6 +15,14 @@ def compiled(function: Function) -> Function:
     return cast(Function, _kept(numba.njit, function, nogil=True))
 
 
+def inner(function: Function) -> Function:
+    """Compile for callers that are compiled themselves, and keep nothing on disk.
+
+    Of a kept function, numba sees no change in the other files that it calls: callers that are new would get old code.
+    """
+    return cast(Function, numba.njit(error_model="numpy", nogil=True)(function))
+
+
 def c_function(signature: Any, function: Callable[..., object]) -> Any:
     """Compile a callback for C, which must not return or raise anything; ``signature`` is numba's.
 

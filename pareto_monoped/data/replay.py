@@ -104,6 +104,9 @@ def replay(folder: Path, place: str = "") -> tuple[float, float, float]:
         wanted, below = virtual_leg(jump, q[motors[0]], q[motors[1]], speed)
         if "law" in jump:
             wanted = profile(jump, step * jump["timestep_s"], foot(jump, *q[motors])[:2])
+            if jump["law"] == "tracking":
+                damper = {"stiffness_n_per_m": 0.0, "torsional_stiffness_n_m_per_rad": 0.0, "weight_n": 0.0}
+                wanted = wanted + virtual_leg(jump | damper, q[motors[0]], q[motors[1]], speed)[0]
         clearance = q[z] + below - jump["foot_radius_m"]
         tick = step % jump["period_steps"] == 0 and not latched
         if tick:

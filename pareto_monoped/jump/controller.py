@@ -8,7 +8,7 @@ closes over ``controller_record.origin``, because numba recompiles a function on
 import math
 from typing import Any
 
-from pareto_monoped.compute.compiled import compiled
+from pareto_monoped.compute.compiled import inner
 from pareto_monoped.design import GRAVITY_M_PER_S2, Floats
 from pareto_monoped.jump.controller_record import HIP, KNEE, TOUCH_M
 from pareto_monoped.jump.torques import delivered, held_pose, limited, lower, release, since_touch_s, torques
@@ -22,7 +22,7 @@ STILL_M_PER_S, STILL_RAD_PER_S, STILL_S = 0.01, 0.05, 0.05
 SPEED_LIMIT = 1e4  #: Speed of a joint or slide (rad/s, m/s) beyond which the simulation has failed.
 
 
-@compiled
+@inner
 def control(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
     """Book the last step of a jump, end the jump if it is over, and set the torques of its next step.
 
@@ -46,7 +46,7 @@ def control(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
         _stop(q, v, ctrl, jump)
 
 
-@compiled
+@inner
 def places(nv: int) -> tuple[int, int, int, int, int]:
     """Return where z, hip, knee and the motors of hip and knee stand among ``nv`` coordinates.
 
@@ -57,7 +57,7 @@ def places(nv: int) -> tuple[int, int, int, int, int]:
     return (z, z + 1, z + 2, nv - 1, nv - 2) if nv > 4 else (z, z + 1, z + 2, z + 1, z + 2)
 
 
-@compiled
+@inner
 def _stop(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
     """Set the torques of the bumpers: the part's slow torque times 1 + chi speed, as Hunt and Crossley have it."""
     if ctrl.shape[0] == 2:
@@ -76,7 +76,7 @@ def _stop(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
         ctrl[2 + joint] = jump.stop_torque_n_m[joint] = torque
 
 
-@compiled
+@inner
 def _fine(q: Floats, v: Floats) -> bool:
     """Return whether a state is finite and slower than ``SPEED_LIMIT``."""
     fine = True
@@ -85,7 +85,7 @@ def _fine(q: Floats, v: Floats) -> bool:
     return fine
 
 
-@compiled
+@inner
 def _end(q: Floats, v: Floats, jump: Any) -> None:
     """End a jump at the apex (the foot is off the floor and the base no longer rises) or in failure."""
     z = places(v.shape[0])[0]
@@ -99,7 +99,7 @@ def _end(q: Floats, v: Floats, jump: Any) -> None:
         jump.status = TIMEOUT if jump.off_floor > 0.0 else NO_LIFT_OFF
 
 
-@compiled
+@inner
 def _end_landing(q: Floats, v: Floats, jump: Any) -> None:
     """End a landing at rest in the crouch, or in failure: base or knee has met the floor, or nothing comes to rest."""
     z, hip, knee, _, _ = places(v.shape[0])
@@ -114,7 +114,7 @@ def _end_landing(q: Floats, v: Floats, jump: Any) -> None:
         jump.status = TIMEOUT
 
 
-@compiled
+@inner
 def _fly(q: Floats, v: Floats, jump: Any) -> None:
     """A step after the torque has been switched off for good."""
     if not _fine(q, v):
@@ -134,7 +134,7 @@ def _fly(q: Floats, v: Floats, jump: Any) -> None:
         jump.clearance_m = q[z] + rz - jump.foot_radius_m
 
 
-@compiled
+@inner
 def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
     """A step under the controller."""
     if not _fine(q, v):
@@ -204,12 +204,12 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
         ctrl[joint] = jump.joint_torque_n_m[joint] = torque
 
 
-@compiled
+@inner
 def _direction(angle: float) -> tuple[float, float]:
     return math.sin(angle), math.cos(angle)
 
 
-@compiled
+@inner
 def _read_back(q: Floats, v: Floats, jump: Any) -> tuple[float, float, float]:
     """Positions z, hip, knee at the time of the speeds, half a step back, with the acceleration of the last step."""
     z, _, _, hip, knee = places(v.shape[0])
@@ -221,7 +221,7 @@ def _read_back(q: Floats, v: Floats, jump: Any) -> tuple[float, float, float]:
     )
 
 
-@compiled
+@inner
 def _foot(
     thigh: tuple[float, float], shank: tuple[float, float], jump: Any
 ) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -230,7 +230,7 @@ def _foot(
     return (-jump.thigh_length_m * thigh[0] + x, -jump.thigh_length_m * thigh[1] + z), (x, z)
 
 
-@compiled
+@inner
 def _note_state(q: Floats, v: Floats, thigh: tuple[float, float], shank: tuple[float, float], jump: Any) -> None:
     """Keep the state at the start of a step, with sine and cosine of the links' angles."""
     z, _, _, hip, knee = places(v.shape[0])
@@ -246,7 +246,7 @@ def _note_state(q: Floats, v: Floats, thigh: tuple[float, float], shank: tuple[f
     jump.drift_m = abs(jump.position[0])
 
 
-@compiled
+@inner
 def _gate(clearance: float, touching: bool, jump: Any) -> float:
     """Return the share of the torque that passes at a foot clearance; notes lift-off.
 
@@ -272,7 +272,7 @@ def _gate(clearance: float, touching: bool, jump: Any) -> float:
     return gate
 
 
-@compiled
+@inner
 def _command(wanted: tuple[float, float], share: tuple[float, float], speed: tuple[float, float], jump: Any) -> None:
     """Give the drivers the torques of this control period; they act on the command of ``delay_periods`` ago."""
     size = jump.commands.shape[0]
@@ -293,7 +293,7 @@ def _command(wanted: tuple[float, float], share: tuple[float, float], speed: tup
             jump.motor_torque_n_m[joint] = jump.commands[slot, 2 + joint] * torque
 
 
-@compiled
+@inner
 def _book(jump: Any, speed: tuple[float, float]) -> None:
     """Add up the step just made: its work is torque times the mean speed of the step, or the speed at its start."""
     timestep, bus = jump.timestep_s, 0.0
@@ -319,7 +319,7 @@ def _book(jump: Any, speed: tuple[float, float]) -> None:
         jump.peak_power_w[joint] = max(jump.peak_power_w[joint], abs(power))
 
 
-@compiled
+@inner
 def _loads(v: Floats, jump: Any) -> None:
     """Book the loads in the step just made, from its mean acceleration, by Newton's and Euler's laws of the planar leg.
 
@@ -401,7 +401,7 @@ def _loads(v: Floats, jump: Any) -> None:
             jump.stop_energy_j -= stop * 0.5 * (jump.velocity[2 + joint] + after) * timestep
 
 
-@compiled
+@inner
 def _spring(joint: int, jump: Any) -> float:
     """Return the torque on a joint of its elastic drive at the start of the last step, as MuJoCo's tendon pulls."""
     wound = jump.motor_rad[joint] - jump.position[2 + joint]
@@ -412,14 +412,14 @@ def _spring(joint: int, jump: Any) -> float:
     return torque
 
 
-@compiled
+@inner
 def turned(vector: Any, direction: tuple[float, float]) -> tuple[float, float]:
     """Return a vector (x, z) of a body frame in the world: turned about +y by the angle with this sine and cosine."""
     sin, cos = direction
     return cos * vector[0] + sin * vector[1], cos * vector[1] - sin * vector[0]
 
 
-@compiled
+@inner
 def _accelerated(
     origin: tuple[float, float], arm: tuple[float, float], speed: float, acceleration: float
 ) -> tuple[float, float]:
@@ -431,7 +431,7 @@ def _accelerated(
     )
 
 
-@compiled
+@inner
 def _moment(arm: tuple[float, float], force: tuple[float, float]) -> float:
     """Return the moment about +y of a force at the end of ``arm``."""
     return arm[1] * force[0] - arm[0] * force[1]

@@ -13,7 +13,7 @@ import numpy as np
 from pareto_monoped.design import KNOT_NAMES
 
 HIP, KNEE = 0, 1
-VIRTUAL_LEG, OVER_TIME, OVER_LENGTH, PUSH, OWN = range(5)
+VIRTUAL_LEG, OVER_TIME, OVER_LENGTH, PUSH, OWN, TRACKING = range(6)
 """``law``: what the motors are told, see ``torques.torques``."""
 TOUCH_M = 1e-9  #: Clearance that still counts as touching, because of rounding in the start pose.
 MOST_DELAY = 8  #: Control periods that a command can be late: 3 ms (bus and driver) at 0.5 ms each, and two more.

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import KNOT_NAMES, MOST_KNOTS, Floats
 from pareto_monoped.jump.calibration import Calibration, SpringContact
-from pareto_monoped.jump.controller_record import OBSERVED
-from pareto_monoped.jump.laws import PAPER_LAW, Profile
+from pareto_monoped.jump.controller_record import KNEE, OBSERVED
+from pareto_monoped.jump.laws import Profile
 from pareto_monoped.jump.model import StartPose, joint_friction_n_m, start_pose, start_qpos
 from pareto_monoped.jump.population import Records, first_records, prepare, states
 from pareto_monoped.jump.variations import Variations, vary_records
@@ -98,27 +98,28 @@ class PlanarPopulation:
 
 
 def told_profiles(
-    robots: RobotArrays, control: Floats, calibration: Calibration, law: Profile, threads: int = 1
+    robots: RobotArrays, control: Floats, calibration: Calibration, law: Profile, *, most: float = 1.0
 ) -> Floats:
-    """Return profiles nearest to what the virtual leg tells the motors of n robots that can stand, shape (n, 25).
+    """Return profiles nearest to what the calibration's law tells the motors of n robots that can stand, shape (n, 25).
 
     The columns have the order of ``KNOT_NAMES``. Knots are those of the least squares of torques from the start to
-    lift-off, each taken back by the delay; the push time ends there, too.
+    lift-off, each taken back by the delay, and at most ``most``; the push time ends there, too.
     """
-    model = calibration.under(PAPER_LAW)
-    population = population_of(robots, control, start_pose(robots, model), model, threads)
+    population = population_of(robots, control, start_pose(robots, calibration), calibration)
     found = np.zeros((len(robots), len(KNOT_NAMES)))
-    late = round(model.simulation.delay_s / model.simulation.timestep_s)
+    late = round(calibration.simulation.delay_s / calibration.simulation.timestep_s)
     for row, seen in enumerate(population.observed()):
         record = population.records[row]
         end = max(int(record["lift_off_step"]) - 1, late + 2)
         told = seen[late:end, 12:14] / record["torque_limit_n_m"]
-        time_s = np.arange(len(told), dtype=np.float64) * model.simulation.timestep_s
+        time_s = np.arange(len(told), dtype=np.float64) * calibration.simulation.timestep_s
         directions = seen[: len(told), 8:12] * np.repeat([record["thigh_length_m"], record["shank_length_m"]], 2)
         leg_m = np.hypot(directions[:, 0] + directions[:, 2], directions[:, 1] + directions[:, 3])
+        lever_m = (directions[:, 3] * directions[:, 0] - directions[:, 2] * directions[:, 1]) / leg_m
+        told[:, KNEE] -= law.beside_knots(record, time_s, leg_m, lever_m) / record["torque_limit_n_m"][KNEE]
         straight_m = float(record["thigh_length_m"] + record["shank_length_m"])
         basis = law.basis(law.shares(time_s, np.asarray(leg_m), straight_m))
-        knots = np.clip(np.linalg.lstsq(basis, told, rcond=None)[0], -1.0, 1.0)
+        knots = np.clip(np.linalg.lstsq(basis, told, rcond=None)[0], -most, most)
         found[row, 0] = time_s[-1]
         for joint in range(2):
             first = 1 + joint * MOST_KNOTS

@@ -243,8 +243,7 @@ class _Fallen:
         calibration, robots = self.calibration, self.robots
         elapsed_s = (records["steps"] - 1.0) * calibration.simulation.timestep_s
         heat, energy, absorbed = (records[name] for name in ("joule_heat_j", "energy_j", "absorbed_j"))
-        # What is taken less what flows back is work and heat; the landing's records let nothing flow back.
-        returned = records["electrical_energy_j"] - (energy - absorbed).sum(axis=1) - heat
+        returned = _returned_j(records)
         kept = calibration.drive.regeneration_share * returned
         loads = _loads(robots, records)
         known = loads_of(loads | dict(zip(NAMES, self.designs[self.rows].T, strict=False)))
@@ -267,6 +266,12 @@ class _Fallen:
 
 
 _NAMES = tuple(one.name for one in LANDING_MEASURES)
+
+
+def _returned_j(records: Records) -> Floats:
+    """Return the energy that landings feed back, whose own records let nothing flow back: taken less work and heat."""
+    work = (records["energy_j"] - records["absorbed_j"]).sum(axis=1)
+    return np.asarray(records["electrical_energy_j"] - work - records["joule_heat_j"])
 
 
 def _loads(robots: RobotArrays, records: Records) -> dict[str, Floats]:
@@ -380,8 +385,7 @@ def _row(jumped: Records, ended: Records, calibration: Calibration) -> tuple[flo
     period_s = sum(float(one["steps"][0]) - 1.0 for one in both) * step_s
     energy = sum(float(one["energy_j"].sum()) for one in both)
     taken = sum(float(one["electrical_energy_j"][0]) for one in both) + drive.standby_power_w * period_s
-    net = float(ended["energy_j"].sum() - ended["absorbed_j"].sum() + ended["joule_heat_j"][0])
-    taken -= drive.regeneration_share * (float(ended["electrical_energy_j"][0]) - net)
+    taken -= drive.regeneration_share * float(_returned_j(ended)[0])
     heat = (jumped["winding_heat_j"] + ended["winding_heat_j"])[0]
     return float(jumped["height_m"][0]), energy, taken, float(heat[0]), float(heat[1]), period_s
 

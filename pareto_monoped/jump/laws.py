@@ -17,7 +17,7 @@ from pydantic import Field
 from pareto_monoped.config import Strict, checked
 from pareto_monoped.design import KNOT_NAMES, KNOTS, MOST_KNOTS, NAMES, PAPER_CONTROL, VARIABLES, Floats, Variable
 from pareto_monoped.errors import DesignError, InputError, unknown_name
-from pareto_monoped.jump.controller_record import OVER_LENGTH, OVER_TIME, OWN
+from pareto_monoped.jump.controller_record import OVER_LENGTH, OVER_TIME, OWN, TRACKING
 
 if TYPE_CHECKING:
     from pareto_monoped.robot.population import RobotArrays
@@ -110,6 +110,13 @@ class Profile(Law, Strict):
         unit, smooth = np.eye(self.knots), self.between == "cubic"
         return np.array([[between(share, one, self.knots, smooth) for one in unit] for share in shares])
 
+    def beside_knots(self, record: Any, time_s: Floats, leg_m: Floats, lever_m: Floats) -> Floats:
+        """Return what the law tells the knee besides the knots in the states of a push, in N m; the hip gets nothing.
+
+        ``lever_m`` says by how much the leg's length changes per angle of the knee.
+        """
+        return np.zeros(len(time_s))
+
     @abstractmethod
     def shares(self, time_s: Floats, leg_m: Floats, straight_m: float) -> Floats:
         """Return how far states of a push, from its first to its last, are from the first knot to the last one."""
@@ -156,9 +163,35 @@ class TorqueOverLength(Profile):
         return np.asarray(np.clip((leg_m - leg_m[0]) / (straight_m - leg_m[0]), 0.0, 1.0))
 
 
-AnyLaw = Annotated[VirtualLeg | TorqueOverTime | TorqueOverLength, Field(discriminator="kind")]
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tracking(TorqueOverLength):
+    """Torque over the leg's length and speed: knots over the length, and the virtual leg's damper against the speed.
+
+    Nothing is told by the clock, so that neither a late command nor a weak motor makes the torques fall behind the leg.
+    """
+
+    kind: Literal["tracking"]  # type: ignore[assignment]  # another name
+    number: ClassVar[int] = TRACKING
+
+    @property
+    def variables(self) -> tuple[Variable, ...]:
+        """Return the damping C and the knots."""
+        knots: tuple[Variable, ...] = Profile.variables.fget(self)  # type: ignore[attr-defined]  # likewise
+        return (VARIABLES["damping_n_s_per_m"], *knots)
+
+    def beside_knots(self, record: Any, time_s: Floats, leg_m: Floats, lever_m: Floats) -> Floats:
+        """Return the torques of the damper."""
+        return np.asarray(-record["damping_n_s_per_m"] * np.gradient(leg_m, time_s) * lever_m)
+
+
+AnyLaw = Annotated[VirtualLeg | TorqueOverTime | TorqueOverLength | Tracking, Field(discriminator="kind")]
 """The laws that a study file or a calibration may name."""
-_LAWS = {"virtual_leg": VirtualLeg, "torque_over_time": TorqueOverTime, "torque_over_length": TorqueOverLength}
+_LAWS = {
+    "virtual_leg": VirtualLeg,
+    "torque_over_time": TorqueOverTime,
+    "torque_over_length": TorqueOverLength,
+    "tracking": Tracking,
+}
 KINDS = tuple(_LAWS)
 """Their names."""
 PAPER_LAW = VirtualLeg()

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from pareto_monoped.compute.compiled import compiled
+from pareto_monoped.compute.compiled import compiled, inner
 from pareto_monoped.design import GRAVITY_M_PER_S2, Floats
 from pareto_monoped.jump.controller import DIVERGED, FLYING, control, places, turned
 from pareto_monoped.jump.controller_record import HIP, KNEE, origin
@@ -36,7 +36,7 @@ _OFF, _STICKS, _SLIDES_UP, _SLIDES_DOWN = 0, 1, 2, 3
 _MOST_ACCELERATION = 1e10  # beyond which MuJoCo gives a simulation up (mjMAXVAL)
 
 
-@compiled
+@inner
 def _pose(thigh: tuple[float, float], shank: tuple[float, float], jump: Any, arms: Floats) -> None:
     """Fill ``arms``, shape (4, 2): hip to knee and to the thigh's centre, knee to the shank's centre and to the foot.
 
@@ -48,7 +48,7 @@ def _pose(thigh: tuple[float, float], shank: tuple[float, float], jump: Any, arm
     arms[3, 0], arms[3, 1] = turned((0.0, -jump.shank_length_m), shank)
 
 
-@compiled
+@inner
 def _inertia(arms: Floats, guided: bool, elastic: bool, jump: Any, matrix: Floats) -> None:
     """Fill the mass matrix of x, z, hip and knee, shape (4, 4), without the motors of elastic drives."""
     base_kg, thigh_kg, shank_kg = jump.body_mass_kg[0] + jump.stand_mass_kg, jump.body_mass_kg[1], jump.body_mass_kg[2]
@@ -75,7 +75,7 @@ def _inertia(arms: Floats, guided: bool, elastic: bool, jump: Any, matrix: Float
             matrix[j, i] = matrix[i, j]
 
 
-@compiled
+@inner
 def _forces(q: Floats, v: Floats, ctrl: Floats, arms: Floats, jump: Any, force: Floats) -> None:
     """Fill the forces of weight, motion, drives, dampers and stops on x, z, hip, knee, motor of hip and of knee."""
     z, hip, knee, hip_motor, knee_motor = places(len(q))
@@ -108,7 +108,7 @@ def _forces(q: Floats, v: Floats, ctrl: Floats, arms: Floats, jump: Any, force: 
             force[4 + joint] = drive - torque
 
 
-@compiled
+@inner
 def _solve(matrix: Floats, right: Floats, a: Floats) -> None:
     """Solve with a symmetric positive definite matrix, shape (4, 4), by L D L^T; its lower triangle is overwritten."""
     for i in range(4):
@@ -133,7 +133,7 @@ def _solve(matrix: Floats, right: Floats, a: Floats) -> None:
         a[i] = entry
 
 
-@compiled
+@inner
 def _solve_all(matrix: Floats, right: Floats, added: tuple[float, float], elastic: bool, jump: Any, a: Floats) -> None:
     """Solve for all six accelerations, with inertias ``added`` to what both motors move.
 
@@ -153,7 +153,7 @@ def _solve_all(matrix: Floats, right: Floats, added: tuple[float, float], elasti
     a[4], a[5] = right[4] / hip_kg_m2, (right[5] - coupling * a[2]) / knee_kg_m2
 
 
-@compiled
+@inner
 def _add(matrix: Floats, right: Floats, row: Any, weight: float, wanted: float) -> None:
     """Add a constraint ``weight`` (``wanted`` - J a) along J = ``row`` to the equations; its lower triangle will do."""
     for i in range(4):
@@ -162,13 +162,13 @@ def _add(matrix: Floats, right: Floats, row: Any, weight: float, wanted: float) 
         right[i] += weight * wanted * row[i]
 
 
-@compiled
+@inner
 def _dot(row: Any, values: Floats) -> float:
     total: float = row[0] * values[0] + row[1] * values[1] + row[2] * values[2] + row[3] * values[3]
     return total
 
 
-@compiled
+@inner
 def _inverse_masses(guided: bool, elastic: bool, jump: Any, work: Any, inverse: Floats) -> None:
     """Fill A of z, of what the motors of hip and knee move, and of the foot, at the zero pose (docs/model.md)."""
     arms, matrix, whole, right, a = work
@@ -196,7 +196,7 @@ def _inverse_masses(guided: bool, elastic: bool, jump: Any, work: Any, inverse: 
         inverse[3] += _dot(row, a) / 3.0
 
 
-@compiled
+@inner
 def _accelerate(q: Floats, v: Floats, ground: Any, jump: Any, inverse: Floats, mode: Any, work: Any, a: Floats) -> bool:
     """Fill the accelerations under all constraints, and return whether there are any.
 
@@ -273,7 +273,7 @@ def _accelerate(q: Floats, v: Floats, ground: Any, jump: Any, inverse: Floats, m
     return False
 
 
-@compiled
+@inner
 def _step(q: Floats, v: Floats, elastic: bool, jump: Any, work: Any, a: Floats) -> bool:
     """Make a step with accelerations ``a``; MuJoCo takes the dampers of joints at its end: (M + h D) a' = M a."""
     _, matrix, whole, _, right, _ = work

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from pareto_monoped.compute.compiled import call_address, compiled
+from pareto_monoped.compute.compiled import call_address, compiled, inner
 from pareto_monoped.design import MOST_KNOTS, Floats
-from pareto_monoped.jump.controller_record import HIP, KNEE, OVER_LENGTH, OVER_TIME, OWN, PUSH
+from pareto_monoped.jump.controller_record import HIP, KNEE, OVER_LENGTH, OVER_TIME, OWN, PUSH, TRACKING
 
 
-@compiled
+@inner
 def torques(
     angle: tuple[float, float],
     foot: tuple[float, float],
@@ -30,6 +30,8 @@ def torques(
         return _on_profile(time_s, jump)
     if jump.law == OVER_LENGTH:
         return _on_profile(math.sqrt(foot[0] * foot[0] + foot[1] * foot[1]), jump)
+    if jump.law == TRACKING:
+        return _tracking(foot, shank, speed, jump)
     if jump.law == PUSH:
         return push(angle, foot, shank, speed, jump)
     if jump.law == OWN:
@@ -37,7 +39,7 @@ def torques(
     return virtual_leg(foot, shank, speed, jump)
 
 
-@compiled
+@inner
 def _on_profile(place: float, jump: Any) -> tuple[float, float]:
     """Return the torques at a time or leg length; before the first knot and after the last one those of that knot."""
     share = (place - jump.first_knot) * jump.per_profile
@@ -45,6 +47,20 @@ def _on_profile(place: float, jump: Any) -> tuple[float, float]:
     limit = jump.torque_limit_n_m
     hip = limit[HIP] * between(share, jump.profile[1:], knots, smooth)
     return hip, limit[KNEE] * between(share, jump.profile[1 + MOST_KNOTS :], knots, smooth)
+
+
+@inner
+def _tracking(
+    foot: tuple[float, float], shank: tuple[float, float], speed: tuple[float, float], jump: Any
+) -> tuple[float, float]:
+    """Return the torques at a leg length, less those of a damper between hip and foot, which leave the hip alone."""
+    (rx, rz), (shank_x, shank_z) = foot, shank
+    leg2 = rx * rx + rz * rz
+    hip, knee = _on_profile(math.sqrt(leg2), jump)
+    drx = rz * speed[HIP] + shank_z * speed[KNEE]
+    drz = -rx * speed[HIP] - shank_x * speed[KNEE]
+    pull = jump.damping_n_s_per_m * (rx * drx + rz * drz) / leg2
+    return hip, knee - pull * (shank_z * rx - shank_x * rz)
 
 
 @compiled
@@ -67,7 +83,7 @@ def between(share: float, values: Floats, knots: int, smooth: bool) -> float:
     return float(start + u * (out + u * (3.0 * rise - 2.0 * out - in_ + u * (out + in_ - 2.0 * rise))))
 
 
-@compiled
+@inner
 def _own(
     time_s: float, angle: tuple[float, float], foot: tuple[float, float], speed: tuple[float, float], jump: Any
 ) -> tuple[float, float]:
@@ -80,7 +96,7 @@ def _own(
     return torque[HIP], torque[KNEE]
 
 
-@compiled
+@inner
 def virtual_leg(
     foot: tuple[float, float], shank: tuple[float, float], speed: tuple[float, float], jump: Any
 ) -> tuple[float, float]:
@@ -104,7 +120,7 @@ def virtual_leg(
     return rz * fx - rx * fz, shank_z * fx - shank_x * fz
 
 
-@compiled
+@inner
 def push(
     angle: tuple[float, float],
     foot: tuple[float, float],
@@ -137,7 +153,7 @@ def push(
     return hip, knee
 
 
-@compiled
+@inner
 def held_pose(angle: tuple[float, float], speed: tuple[float, float], jump: Any) -> tuple[float, float]:
     """Return torques of hip and knee that pull the leg back to its start pose in flight."""
     stiffness, damping = jump.flight_stiffness_n_m_per_rad, jump.flight_damping_n_m_s_per_rad
@@ -147,7 +163,7 @@ def held_pose(angle: tuple[float, float], speed: tuple[float, float], jump: Any)
     )
 
 
-@compiled
+@inner
 def release(knee: float, jump: Any) -> float:
     """Return the share of the knee's torque before its lower stop: a ramp over ``knee_release_rad`` down to zero."""
     if jump.knee_release_rad == 0.0:
@@ -156,21 +172,21 @@ def release(knee: float, jump: Any) -> float:
     return share
 
 
-@compiled
+@inner
 def since_touch_s(jump: Any) -> float:
     """Return the time since the foot of a landing first touched the floor."""
     since: float = (jump.steps - 1.0) * jump.timestep_s - jump.touched_s
     return since
 
 
-@compiled
+@inner
 def lower(jump: Any) -> None:
     """Move the place that a landing's spring pulls the foot to: the catch, then smoothly down to the crouch."""
     u = min(max((since_touch_s(jump) - jump.catch_s) / jump.lower_s, 0.0), 1.0)
     jump.foot_m[1] = jump.catch_m + (jump.crouch_m - jump.catch_m) * u * u * (3.0 - 2.0 * u)
 
 
-@compiled
+@inner
 def limited(torque: float, speed: float, jump: Any, joint: int) -> float:
     """Return ``torque`` within the motor's peak torque and, while the motor drives, within its voltage-speed line."""
     limit: float = jump.torque_limit_n_m[joint]
@@ -188,7 +204,7 @@ def limited(torque: float, speed: float, jump: Any, joint: int) -> float:
     return torque
 
 
-@compiled
+@inner
 def delivered(torque: float, speed: float, jump: Any, joint: int) -> float:
     """Return the torque that reaches the joint: the load-dependent friction of gears and chain opposes the motion."""
     loss: float = jump.loss[joint]
@@ -199,7 +215,7 @@ def delivered(torque: float, speed: float, jump: Any, joint: int) -> float:
     return min(max(after, -limit), limit)
 
 
-@compiled
+@inner
 def _deceleration(
     r: float, v: float, width: float, full: float, stiffness: float, damping: float, inertia: float
 ) -> float:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.design import CONTROL, PAPER_CONTROL, Floats
 from pareto_monoped.jump.calibration import Calibration
-from pareto_monoped.jump.controller_record import KNEE
+from pareto_monoped.jump.controller_record import KNEE, TRACKING
 from pareto_monoped.jump.end_stops import damping_s_per_m
 from pareto_monoped.jump.model import FOOT_GEOM, coordinates, joint_places, motor_places
 from pareto_monoped.robot.population import JointStops, RobotArrays
@@ -52,6 +52,14 @@ class Variations:
 
     def __len__(self) -> int:
         return len(self.masses)
+
+
+def unvaried(n: int) -> Variations:
+    """Return variations that leave n jumps as they are."""
+    shapes = {"masses": (len(BODIES),), "peak_torques": (2,), "link_lengths_m": (2,), "gains": (len(PAPER_CONTROL),)}
+    names = [field.name for field in fields(Variations)]
+    added = ("link_lengths_m", "delays_s")
+    return Variations(**{name: np.full((n, *shapes.get(name, ())), float(name not in added)) for name in names})
 
 
 def varied_robots(robots: RobotArrays, variations: Variations) -> RobotArrays:
@@ -95,6 +103,8 @@ def vary_records(records: Any, stops: JointStops, calibration: Calibration, vari
         records["weight_n"] *= known.sum(axis=1) / true.sum(axis=1)
     else:
         records["weight_n"] *= known[:, BODIES.index("base")] / true[:, BODIES.index("base")]
+    # The damper of the tracking law acts by the knee's motor, as its knots do.
+    records["damping_n_s_per_m"] *= np.where(records["law"] == TRACKING, variations.peak_torques[:, KNEE], 1.0)
     records["joint_damping_n_m_s_per_rad"] *= variations.damping[:, None]
     records["rail_friction_n"] *= variations.rail_friction
     records["bumper_n_m"] *= variations.stop_stiffness[:, None]

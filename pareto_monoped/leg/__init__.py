@@ -5,7 +5,7 @@ shape (n,). Every part is described in the frame of its body: origin on the body
 and thigh, the knee for the shank), x forward, y up along the link, z along the joint axis, to the robot's right, with
 z = 0 in the middle plane of the leg. ``dimensions`` shows the lateral layout.
 
-Order of imports, lowest first: actuator_fit, chain_drives, sandwich; dimensions; chain, electronics, journal, sprocket,
+Order of imports, lowest first: actuator_fit, sandwich; dimensions; chain, electronics, journal, sprocket,
 stops; hip, knee, stop_parts; base, shank, thigh_outline; stand, thigh.
 """
 
@@ -13,7 +13,6 @@ __all__ = [
     "actuator_fit",
     "base",
     "chain",
-    "chain_drives",
     "dimensions",
     "electronics",
     "journal",

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pareto_monoped.actuator.actuator import MountInterface, OutputInterface
 from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.ratiomap import ActuatorMap
 from pareto_monoped.actuator.windings import PER_PHASE_AMPLITUDE
@@ -136,9 +137,17 @@ def actuator_fit(actuator_map: ActuatorMap) -> ActuatorFit:
             f"actuators of {actuator_map.motor.name} = 0: a leg needs at least one to be drilled for; "
             "choose another motor or other actuator settings"
         )
-    mount, output = actuators[0].mount, actuators[0].output
     motor = actuator_map.motor
     driver = motor_driver_for(motor)
+    note = "" if driver.carries(motor) else driver.limit(motor)
+    torque_n_m = max(actuator.peak_torque_n_m for actuator in actuators)
+    return fit_of(actuators[0].mount, actuators[0].output, driver, note, torque_n_m)
+
+
+def fit_of(
+    mount: MountInterface, output: OutputInterface, driver: MotorDriver, driver_note: str, torque_n_m: float
+) -> ActuatorFit:
+    """Return what a leg takes from an actuator's interfaces."""
     return ActuatorFit(
         mount_pitch_radius_mm=0.5 * mount.bolts.pitch_circle_mm,
         mount_holes=mount.bolts.count,
@@ -156,6 +165,6 @@ def actuator_fit(actuator_map: ActuatorMap) -> ActuatorFit:
         back_holes=mount.back_bolts.count,
         back_screw_mm=mount.back_bolts.diameter_mm,
         driver=driver,
-        driver_note="" if driver.carries(motor) else driver.limit(motor),
-        torque_n_m=max(actuator.peak_torque_n_m for actuator in actuators),
+        driver_note=driver_note,
+        torque_n_m=torque_n_m,
     )

@@ -7,17 +7,19 @@ The lateral layout, along the joint axes with z = 0 in the middle of the leg (z 
 
 The hip actuator is bolted to the base's near cheek; its output turns the thigh through a coupling. The knee actuator
 is bolted to the thigh's outer plate on the same axis; its output turns a sprocket inside the thigh, and a chain turns
-the knee, one to one. The far cheek carries the knee actuator's free end in a bearing.
+the knee, one to one. The far cheek carries the knee actuator's free end in a bearing. The chain is a roller chain of
+ISO 606, chosen by torque.
 """
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
+import numpy as np
+
 from pareto_monoped.actuator.bearings import small_bearing
 from pareto_monoped.actuator.ratiomap import Maps, joint_maps
 from pareto_monoped.geometry.shapes import Pattern
 from pareto_monoped.leg.actuator_fit import ActuatorFit, actuator_fit
-from pareto_monoped.leg.chain_drives import ChainDrive, chain_drive_for
 
 _BEARING_BORE_MM = 20.0  # of knee and base, our own choice: four M4 fit into the axle, cables through the journal
 _LOWER_ROD = (32.0 / 68.0, 60.0 / 68.0)  # direction from the hip axis: 28 degrees to either side of upright
@@ -28,6 +30,66 @@ THIGH_HALF_WIDTH_MM = 24.0
 # Width of the metal beside the windows of these plates: 9 mm for the 44 N m of the VT8020, and in proportion for more.
 # The VT8020's chain then limits the jumps before the plates do (``strength.links``).
 _THIGH_SIDE_MM, _THIGH_SIDE_N_M = 9.0, 45.0
+SAFETY = 5.0
+"""Breaking load over the largest pull. Makers ask for 5 to 7 under shocks (DIN 8150), for chains up to 3 m/s."""
+# Of the knee motor's peak torque: the chain's largest torque in the stop, Case A (its gearbox: 44 N m).
+_STOP_SHARE = 1.8
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChainDrive:
+    """A roller chain (ISO 606) and its two equal sprockets."""
+
+    name: str  #: number of the chain
+    pitch_mm: float  #: between two pins
+    roller_mm: float  #: diameter of the rollers
+    inner_width_mm: float  #: width between the inner plates
+    inner_link_mm: float  #: width over the inner plates
+    pin_mm: float  #: length of the pins
+    pin_diameter_mm: float
+    plate_mm: float  #: height of a plate
+    kg_per_m: float  #: mass per length, from makers' catalogues
+    breaking_n: float  #: least breaking load
+    teeth: int  #: of a sprocket, our own choice
+    sprocket_width_mm: float  #: of the teeth, 0.93 of the chain's inner width with h14 (ISO 606), in steps of 0.2 mm
+
+    @property
+    def pitch_radius_mm(self) -> float:
+        """Radius on which the pins run around a sprocket."""
+        return float(0.5 * self.pitch_mm / np.sin(np.pi / self.teeth))
+
+    @property
+    def torque_limit_n_m(self) -> float:
+        """Largest torque at a sprocket: the chain breaks at ``SAFETY`` times it."""
+        return 1e-3 * self.pitch_radius_mm * self.breaking_n / SAFETY
+
+    @property
+    def bearing_area_mm2(self) -> float:
+        """Of a joint, as ISO 606 counts it: the pin's diameter times the width over the inner plates."""
+        return self.pin_diameter_mm * self.inner_link_mm
+
+
+# Half-inch chains are the strongest for their width that run on a sprocket of this size: 084 breaks at 15.6 kN and fits
+# the thigh that 06B-1 with 8.9 kN needed. Pitch and rollers are equal, so that only the sprocket's width differs.
+# Fourteen teeth are the fewest at which the links clear the knee's bearing cups.
+CHAIN_DRIVES = tuple(
+    ChainDrive(name=name, pitch_mm=12.7, roller_mm=7.75, inner_width_mm=inner, inner_link_mm=link, pin_mm=pin,
+        pin_diameter_mm=diameter, plate_mm=plate, kg_per_m=mass, breaking_n=breaks, teeth=14, sprocket_width_mm=width)
+    for name, inner, link, pin, diameter, plate, mass, breaks, width in (
+        ("081", 3.3, 5.8, 10.2, 3.66, 9.91, 0.28, 8000.0, 3.0),
+        ("083", 4.88, 7.9, 12.9, 4.09, 10.3, 0.42, 11600.0, 4.4),
+        ("084", 4.88, 8.8, 14.8, 4.09, 11.15, 0.59, 15600.0, 4.4),
+    )
+)  # fmt: skip
+"""From the weakest to the strongest."""
+
+
+def chain_drive_for(knee_torque_n_m: float) -> ChainDrive:
+    """Return the smallest drive for the knee's torque with its stop, or the strongest (see ``strength.chain``)."""
+    for drive in CHAIN_DRIVES:
+        if _STOP_SHARE * knee_torque_n_m <= drive.torque_limit_n_m:
+            return drive
+    return CHAIN_DRIVES[-1]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -150,7 +212,11 @@ def leg_dimensions(maps: Maps) -> LegDimensions:
         DesignError: a map has no actuator.
     """
     both = joint_maps(maps)
-    hip, knee = actuator_fit(both.hip), actuator_fit(both.knee)
+    return leg_for(actuator_fit(both.hip), actuator_fit(both.knee))
+
+
+def leg_for(hip: ActuatorFit, knee: ActuatorFit) -> LegDimensions:
+    """Return the leg that fits these actuators."""
     bearing = small_bearing(_BEARING_BORE_MM)
     torque_n_m = max(hip.torque_n_m, knee.torque_n_m)  # inner and outer plate have the same windows
     return LegDimensions(

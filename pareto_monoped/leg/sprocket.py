@@ -18,8 +18,7 @@ from pareto_monoped.geometry.parts import Part, Prism, disc, layer, steel_part
 from pareto_monoped.geometry.roles import GREASE, Group, Joint, JointKind, Purchase, Role
 from pareto_monoped.geometry.screws import M3
 from pareto_monoped.geometry.shapes import Arc, Circle, Floats, Line, Path, Pattern, Shape
-from pareto_monoped.leg.chain_drives import ChainDrive
-from pareto_monoped.leg.dimensions import LegDimensions
+from pareto_monoped.leg.dimensions import ChainDrive, LegDimensions
 from pareto_monoped.materials import ALLOYS, MATERIALS
 
 # Our own layout, mm.

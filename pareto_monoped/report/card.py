@@ -28,13 +28,13 @@ from pareto_monoped.report.packing import column
 from pareto_monoped.report.packing import packed as packed_jumps
 from pareto_monoped.report.quantities import LEADING
 from pareto_monoped.report.resimulation import MOST_FRAMES, Resimulation, jumps_of, of_trials
-from pareto_monoped.report.robust import alternatives_of, influences_of, robust_of
+from pareto_monoped.report.robust import alternatives_of, best_of, influences_of, robust_of
 from pareto_monoped.report.schema import Model3D, Picked, StudyCard
 from pareto_monoped.report.summary import command, notes, provenance, sentences
 from pareto_monoped.report.trials import LETTERS, MOST_ROWS, audit_records, history_columns, thinned, trial_columns
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.search.weighted import weighted_cost
-from pareto_monoped.storage.extra_rows import Stored, StoredSensitivity
+from pareto_monoped.storage.extra_rows import Stored, StoredLimit, StoredSensitivity
 from pareto_monoped.storage.reader import StudyData
 from pareto_monoped.uncertainty.sensitivity import About
 
@@ -70,13 +70,14 @@ class Places:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Source:
-    """A stored study, what was simulated again for it, its exported models, robustness and sensitivities."""
+    """A stored study, what was simulated again for it, its exported models, robustness, sensitivities and limits."""
 
     data: StudyData
     resimulation: Resimulation
     models: Mapping[int, Model3D]
     robustness: Mapping[int, Stored] = field(default_factory=dict)
     sensitivities: Mapping[tuple[int, About], StoredSensitivity] = field(default_factory=dict)
+    limits: Mapping[int, StoredLimit] = field(default_factory=dict)
 
 
 def study_card(
@@ -96,7 +97,7 @@ def study_card(
     front = data.front()
     weights = best_of_weights(data)
     told = [*front["trial"], *data.ill_conditioned, *(trial for _, trial in weights), *source.robustness]
-    told += [trial for trial, _ in source.sensitivities]
+    told += [*(trial for trial, _ in source.sensitivities), *source.limits]
     always = np.isin(data.trials["trial"], told)
     trials = thinned(data.trials, always, most_rows)
     row_of = {int(trial): row for row, trial in enumerate(trials["trial"])}
@@ -161,6 +162,7 @@ def study_card(
         importances=importances(data, tuple(dict.fromkeys((*goals, *LEADING)))),
         robust=robust_of(data, source.robustness, row_of),
         sensitivity=influences_of(source.sensitivities),
+        best=best_of(data, source.limits, row_of),
     )
 
 

@@ -47,7 +47,7 @@ from pareto_monoped.report.tables import (
     safe,
 )
 from pareto_monoped.report.trials import rows_per_study
-from pareto_monoped.storage.extra_rows import read_robustness, read_sensitivity
+from pareto_monoped.storage.extra_rows import read_limits, read_robustness, read_sensitivity
 from pareto_monoped.storage.place import StudyPlace
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.seals import UNSEALED
@@ -219,6 +219,7 @@ def payload_of(
             models=found,
             robustness=read_robustness(data.db),
             sensitivities=read_sensitivity(data.db),
+            limits=read_limits(data.db),
         )
         for data, simulated, found in zip(studies, again, models, strict=True)
     ]

@@ -1,4 +1,4 @@
-"""What the page has of a study's designs under uncertainty, and of alternatives to those that it points out."""
+"""What the page has of a study's designs under uncertainty, their limits, and alternatives to those pointed out."""
 
 from collections.abc import Mapping, Sequence
 
@@ -9,8 +9,8 @@ from pareto_monoped.analysis.robustness import robust_front, robust_trials
 from pareto_monoped.errors import SelectionError
 from pareto_monoped.measures import ROBUST_NAMES, is_own, is_robust
 from pareto_monoped.report.packing import column, packed_column
-from pareto_monoped.report.schema import Influences, Number, OtherDesign, Robust
-from pareto_monoped.storage.extra_rows import Stored, StoredSensitivity
+from pareto_monoped.report.schema import BestTorque, Influences, Number, OtherDesign, Robust
+from pareto_monoped.storage.extra_rows import Stored, StoredLimit, StoredSensitivity
 from pareto_monoped.storage.reader import StudyData
 from pareto_monoped.uncertainty.sensitivity import About, Influence
 
@@ -55,6 +55,32 @@ def alternatives_of(data: StudyData, trial: int, row_of: Mapping[int, int]) -> t
         OtherDesign(row=row_of[one.trial], price=round(one.price, 5), text=one.text(), audited=one.audited)
         for one in found
         if one.trial in row_of
+    )
+
+
+def best_of(data: StudyData, stored: Mapping[int, StoredLimit], row_of: Mapping[int, int]) -> BestTorque | None:
+    """Return what the best torque found reaches with a study's designs that are in ``row_of``; None without any."""
+    found = {row_of[trial]: one.result for trial, one in stored.items() if trial in row_of}
+    if not found:
+        return None
+    held, energy, jumps = data.study.strength, next(iter(found.values())).energy, []
+    for row, one in found.items():
+        both = (one.least_held, one.greatest_held) if held else (one.least, one.greatest)
+        jumps += [(jump.height_m, -jump.energy_j, row) for jump in both if jump is not None]
+    front: list[tuple[int, Number, Number]] = []
+    least_j, designs = np.inf, data.sound
+    for height_m, less_j, row in sorted(jumps, reverse=True):
+        known_j = designs.loc[designs["height_m"] >= height_m, energy].min()  # NaN where none is as high
+        if -less_j < least_j and not known_j <= -less_j:
+            least_j = -less_j
+            high, little = column([height_m, least_j])
+            front.append((row, high, little))
+    return BestTorque(
+        energy=energy,
+        held=held,
+        rows=list(found),
+        gap=column([one.controller_gap_held if held else one.controller_gap for one in found.values()], 4),
+        front=front[::-1],
     )
 
 

@@ -157,6 +157,19 @@ class Robust:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class BestTorque:
+    """What the best torque found reaches with the hardware of a study's designs."""
+
+    energy: str  #: which energy
+    held: bool  #: whether only jumps count that overload no part, as in studies whose designs must hold
+    rows: Sequence[int]  #: of ``Trials``, of the designs that were searched
+    gap: Column  #: of each: percent of its energy that is saved at its height
+    #: Row, height, energy of jumps that need the least at a design's height or go highest, and that neither another one
+    #: nor a design of the study dominates
+    front: Sequence[tuple[int, Number, Number]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Influences:
     """What moves a design's measures."""
 
@@ -262,6 +275,7 @@ class StudyCard:
     #: Measure -> variable -> its importance over all trials, see ``analysis.sensitivity.importances``
     importances: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     robust: Robust | None = None  #: designs under uncertainty; None where none is stored
+    best: BestTorque | None = None  #: None where no limit is stored
     #: Trial number -> "variables" and "assumptions" -> its sensitivity, see ``Influences``
     sensitivity: Mapping[str, Mapping[str, Influences]] = field(default_factory=dict)
 

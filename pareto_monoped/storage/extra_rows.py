@@ -1,13 +1,13 @@
-"""Tables that only some studies have: robustness per trial, sensitivity per trial and kind of factors.
+"""Tables that only some studies have: robustness and limit per trial, sensitivity per trial and kind of factors.
 
 Their rows have their place in the running hash.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Generic, TypeVar, get_args
 
-from pareto_monoped.config import checked, parsed_json
+from pareto_monoped.config import Strict, checked, parsed_json
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.storage.connection import Connection
 from pareto_monoped.storage.place import StudyPlace, storage_of
@@ -49,8 +49,78 @@ class StoredResult(Generic[T]):
     result: T
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Perturbed(Strict):
+    """A jump with what robots have and models do not; height 0 where there is no jump."""
+
+    late_m: float  #: change of its height with 2 ms of delay
+    #: weak_m, strong_m: the same with 5 percent less and more torque of both motors
+    weak_m: float
+    strong_m: float
+    #: p05_m, p95_m: percentiles of the height of robots as built
+    p05_m: float
+    p95_m: float
+    reaches: float  #: share of them that reach 95 percent of the height that was asked for
+    holds: float  #: share of them that overload no part and press no bumper beyond its travel
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reached(Strict):
+    """One jump with the hardware of a design: a certificate."""
+
+    height_m: float
+    energy_j: float  #: the energy that the search is for
+    design: dict[str, float]  #: with the knots of ``controller``
+    controller: dict[str, Any]  #: as a table of a study file; the virtual leg where nothing better was found
+    #: half_step_height_m, half_step_energy: changes with the step halved; the energy's as a share
+    half_step_height_m: float
+    half_step_energy: float
+    perturbed: Perturbed | None = None  #: of ``Limit.over_time`` and ``Limit.tracking`` alone
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limit(Strict):
+    """What the hardware of one design reaches."""
+
+    trial: int | None
+    energy: str  #: which energy, one of ``measures.ENERGIES``
+    height_m: float  #: of the design's own jump
+    energy_j: float
+    floor_j: float  #: below which no controller can be at this height
+    #: Share of the design's energy in percent that the best torque found saves at its height; at least 0
+    controller_gap: float
+    #: The same without overloading a part; below 0 only where the design's own jump overloads one
+    controller_gap_held: float | None
+    least: Reached  #: least energy of a jump at least as high, by any law
+    greatest: Reached  #: greatest height
+    #: The same among jumps that overload no part; None where none was found
+    least_held: Reached | None
+    greatest_held: Reached | None
+    over_time: Reached  #: least energy of torques over time, of jumps that hold if there are any
+    #: Least energy at the height of the law ``tracking`` that reaches 95 percent of it late and with other motors; None
+    #: where none was found
+    tracking: Reached | None
+    perturbed: Perturbed | None  #: the design's own jump; None where a calibration has no room for delays
+    jumps: int  #: that were made
+
+    def text(self) -> str:
+        """Return the gap in words."""
+        held = self.controller_gap_held
+        also = "with a part overloaded" if held is None else f"{held:.1f} % without overloading a part"
+        text = f"controller gap: the best torque found takes {self.controller_gap:.1f} % less for its height, {also}"
+        if self.tracking is None or self.tracking.perturbed is None:
+            return text
+        gap, kept = 100.0 * (1.0 - self.tracking.energy_j / self.energy_j), 100.0 * self.tracking.perturbed.reaches
+        return f"{text}; tracking takes {gap:.1f} % less, and {kept:.0f} % of robots as built keep its height"
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return JSON values."""
+        return asdict(self)
+
+
 Stored = StoredResult[Robustness]
 StoredSensitivity = StoredResult[Sensitivity]
+StoredLimit = StoredResult[Limit]
 
 
 def read_rows(db: StudyPlace, table: ExtraTable, make: Callable[[Any, Any, str], T]) -> dict[Any, StoredResult[T]]:
@@ -85,6 +155,18 @@ def read_robustness(db: StudyPlace) -> dict[int, Stored]:
         return checked(Robustness, values, source=source, error=DatabaseError)
 
     return {int(trial): stored for trial, stored in read_rows(db, ROBUSTNESS, result).items()}
+
+
+LIMITS = ExtraTable(what="limits", key="trial INTEGER")
+
+
+def read_limits(db: StudyPlace) -> dict[int, StoredLimit]:
+    """Read the stored limits of a study's designs by trial; empty if it has none."""
+
+    def result(_: Any, values: Any, source: str) -> Limit:
+        return checked(Limit, values, source=source, error=DatabaseError)
+
+    return {int(trial): stored for trial, stored in read_rows(db, LIMITS, result).items()}
 
 
 SENSITIVITY = ExtraTable(what="sensitivity", key="trial_and_factors TEXT")

@@ -47,6 +47,12 @@ def trial_ids(connection: Connection) -> dict[int, int]:
     return dict(connection.execute("SELECT number, trial_id FROM trials ORDER BY number").fetchall())
 
 
+def require_columns(connection: Connection) -> None:
+    """Ask for every column that trials are written into, so that a damaged schema is refused before anything is."""
+    for table, columns in _WRITTEN.items():
+        connection.execute(f"SELECT {', '.join(columns)} FROM {table} LIMIT 0").fetchall()
+
+
 def drop_trials(connection: Connection, foreign: Sequence[int]) -> None:
     """Delete Optuna's trials of these numbers, and number the others from 0 on, as Optuna would have."""
     known = trial_ids(connection)

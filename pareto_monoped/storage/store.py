@@ -24,6 +24,7 @@ from pareto_monoped.storage.optuna_tables import (
     OptunaTables,
     create_tables,
     drop_trials,
+    require_columns,
     stored_digest,
     study_digests,
     trial_ids,
@@ -101,6 +102,8 @@ class Store:
         self._optuna = OptunaTables(self._storage, int(rows[0][0]), coordinates)
         revision = connection.execute("SELECT version_num FROM alembic_version").fetchone()
         self._direct = revision is not None and revision[0] in known_schemas
+        if self._direct:
+            require_columns(connection)
         self._add_later_columns()
         self._sealer, self._front = Sealer(connection), KeptFront(self._objectives)
         self._front.load(connection)

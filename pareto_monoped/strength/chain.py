@@ -23,7 +23,7 @@ from pareto_monoped.leg.chain import (
     LEAST_ENGAGED,
     THREAD,
 )
-from pareto_monoped.leg.chain_drives import ChainDrive
+from pareto_monoped.leg.dimensions import ChainDrive
 from pareto_monoped.materials import ALLOYS
 from pareto_monoped.strength.connections import MISES
 from pareto_monoped.strength.joint import LegJoint, Structure

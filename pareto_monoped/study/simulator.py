@@ -119,9 +119,10 @@ def _begun(study: Study, evaluator: Evaluator) -> Floats:
     designs = found[rows, : len(NAMES)]
     robots = robot_arrays(designs, maps, model.mass)
     profiles = told_profiles(robots, control_of(designs), model, study.controller)
-    designs[:, [NAMES.index(name) for name in OF_VIRTUAL_LEG]] = [
-        ALL_DEFAULTS.get(name, 0.0) for name in OF_VIRTUAL_LEG
-    ]
+    own = [variable.name for variable in study.controller.variables]
+    for name in OF_VIRTUAL_LEG:
+        if name not in own:
+            designs[:, NAMES.index(name)] = ALL_DEFAULTS.get(name, 0.0)
     return np.hstack((designs, profiles))
 
 

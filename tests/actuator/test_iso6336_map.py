@@ -156,7 +156,10 @@ def test_search_finds_what_a_slow_loop_with_the_slow_rating_finds(name, family, 
     agree(got, slow_best(load_motor(name), family, tenths))
 
 
-@pytest.mark.parametrize("service", [{"overload_static_safety_min": 5.0}, {"bearing_tilt_limit_rad": 5e-4}])
+@pytest.mark.parametrize(
+    "service",
+    [{"overload_static_safety_min": 5.0}, pytest.param({"bearing_tilt_limit_rad": 5e-4}, marks=pytest.mark.long)],
+)
 def test_search_and_slow_loop_agree_where_bearings_decide(service):
     """More is asked of the bearings than usual: needles want a wider face, or no tilt is small enough."""
     motor, family, tenths = load_motor("U8"), "ISSPG", 45

@@ -129,6 +129,7 @@ def test_a_bound_of_a_gear_list_is_its_last_gearbox_and_not_what_the_study_says(
     assert f"knee_ratio at the last gearbox, {last:.4g}, within 4 to 8.7" in binding_limits(known, trial)
 
 
+@pytest.mark.long
 def test_each_motor_s_gearboxes_have_bounds_of_their_own(tmp_path):
     """The greatest of all ratios is one motor's alone: designs with another motor are at a bound below it."""
     path = tmp_path / "s.db"

@@ -122,6 +122,7 @@ def test_it_is_stored_and_not_made_again(made, db, monkeypatch):
     assert len(asked) == 1
 
 
+@pytest.mark.long
 def test_workers_change_no_number(made, tmp_path):
     db, trial, found = made
     copy = tmp_path / "copy.db"

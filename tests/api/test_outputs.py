@@ -53,6 +53,7 @@ def test_a_trial_is_exported_with_what_its_study_stores(stored, tmp_path):
     assert not (tmp_path / "none").exists()
 
 
+@pytest.mark.long
 def test_a_design_that_does_not_hold_is_refused_unless_asked(tmp_path, request):
     weak = C.replace({"hip_ratio": 8.7, "knee_ratio": 8.7, "stiffness_n_per_m": 20.0})
     with pytest.raises(CheckError):

@@ -164,6 +164,7 @@ pm.run(pm.Study.define(name="n", evaluations=40, algorithm="random", audit=False
 """
 
 
+@pytest.mark.long
 def test_a_notebook_shows_a_bar_by_itself(tmp_path):
     nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")
     book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(_NOTEBOOK)])

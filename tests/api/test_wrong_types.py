@@ -30,10 +30,13 @@ WRONG = {
 RIGHT = {
     ("export", "folder", "words"),
     ("export_trial", "folder", "words"),
+    ("limit", "jumps", "none"),
     ("run", "callback", "function"),
     ("run", "callback", "class"),
 }
-"""What is taken: a new folder, in which an export would take long, and what can be called, whose errors are its own."""
+"""What is taken: what would take long (an export in a new folder, as many jumps as by default), and what can be called,
+whose errors are its own."""
+SLOW = {"export_trial", "limit", "sensitivity", "write_report"}
 HEAVY = {"export", "export_trial", "film"}
 """Their target is a folder with something else in it, so that no value makes them export."""
 
@@ -89,7 +92,8 @@ def test_every_public_function_is_tried(made):
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=pytest.mark.long if name == "sensitivity" else ())  # whose right values take long
+        # Their right values take long.
+        pytest.param(name, marks=pytest.mark.long if name in SLOW else ())
         for name in (
             *(name for name in pm.__all__ if inspect.isfunction(getattr(pm, name))),
             *("Study.define", "StoredStudy.pick"),

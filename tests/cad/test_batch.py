@@ -62,9 +62,10 @@ def kernel_process():
     return kernel._kernel._lines[0].process.pid
 
 
+@pytest.mark.long
 def test_a_process_of_a_batch_keeps_its_kernel_between_designs(tmp_path):
     how = {"formats": ["urdf"], "strength": False}
-    jobs = [case_job(case, folder=tmp_path / case, **how) for case in ("C", "B")]
+    jobs = [case_job("C", folder=tmp_path / name, **how) for name in ("one", "other")]
     found = []
     with Processes(lost=batch._lost) as processes:
         for job in jobs:
@@ -90,7 +91,11 @@ class Half:
 
 
 @pytest.mark.parametrize(
-    "what", ["coordinator killed", "worker told to end by SIGTERM", pytest.param("interrupt", marks=pytest.mark.long)]
+    "what",
+    [
+        "coordinator killed",
+        *(pytest.param(what, marks=pytest.mark.long) for what in ("worker told to end by SIGTERM", "interrupt")),
+    ],
 )
 def test_what_is_ended_leaves_nothing_half_written(tmp_path, what):
     code = f"""

@@ -96,7 +96,7 @@ def test_a_robot_that_cannot_stand_has_no_models_of_its_jumps(copy, jump):
 
 
 def test_an_export_by_another_version_is_stale(original, monkeypatch):
-    monkeypatch.setattr("pareto_monoped.cad.write.design_record.MADE_BY", "pareto-monoped 99.0")
+    monkeypatch.setattr("pareto_monoped.cad.as_built.MADE_BY", "pareto-monoped 99.0")
     assert not is_made(original)
 
 

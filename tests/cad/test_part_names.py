@@ -63,6 +63,7 @@ def test_what_is_loose_does_not_depend_on_names(product, renamed, names, unit, p
     assert bool(here[0]) == (part != "none")
 
 
+@pytest.mark.long
 def test_checks_do_not_depend_on_names(product, renamed):
     assert screws.check_bolts(renamed) == screws.check_bolts(product)
     assert gear_mesh.check(renamed) == gear_mesh.check(product)

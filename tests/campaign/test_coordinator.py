@@ -49,6 +49,7 @@ def test_equal_to_studies_run_alone_also_with_other_shares_and_after_being_stopp
         assert (one.evaluations, one.new_evaluations) == (len(expected.trials), len(expected.trials))
 
 
+@pytest.mark.long
 def test_what_fails_says_why_and_stops_nothing_else(tmp_path, monkeypatch):
     head = SMALL.replace("evaluations = 40", "evaluations = 20")
     axes = 'motors = ["Nope.toml", "U8"]\nconstraints = [{}, { mass_kg = { max = 0.1 } }]'
@@ -92,6 +93,7 @@ class Killer:
 
 # Killed once and finished, another is in test_kill.py every time.
 @pytest.mark.parametrize(("times", "state"), [pytest.param(1, "finished", marks=pytest.mark.long), (2, "failed")])
+@pytest.mark.long
 def test_a_killed_worker_is_replaced_once(tmp_path, monkeypatch, times, state):
     (one,) = standings(tmp_path, "evaluations = [80]")
     killer = Killer(monkeypatch, times)

@@ -52,6 +52,7 @@ def test_why_a_design_was_picked_is_said_in_lines_that_fit_a_terminal(capsys, tm
 
 
 @pytest.mark.usefixtures("unchecked")
+@pytest.mark.long
 def test_a_case_of_the_paper_is_exported_with_another_motor(capsys, tmp_path):
     folder = tmp_path / "case"
     code, out, err = run(capsys, "export", "--case", "C", "--motor", "U12", "--formats", "dxf", "-o", folder)
@@ -91,6 +92,7 @@ def test_a_case_is_exported_with_different_motors_and_again_from_its_record(caps
 
 
 @pytest.mark.usefixtures("unchecked")
+@pytest.mark.long
 def test_a_motor_named_for_both_joints_is_exported_as_one(capsys, tmp_path):
     """Byte for byte."""
     for folder, words in (("one", ("--motor", "U8")), ("both", ("--hip-motor", "U8", "--knee-motor", "u8"))):

@@ -71,6 +71,9 @@ def test_compare_prints_residuals_and_intervals(capsys, log):
     lines = {line.split(",")[0].strip(): line.split() for line in out.splitlines()}
     assert float(lines["torque_constant"][2]) == pytest.approx(1.05, abs=0.01)
     assert float(lines["delay"][2]) == pytest.approx(1.2, abs=0.2)
+    for name, true in (("friction", 1.2), ("torque_constant", 1.05), ("delay", 1.2), ("stiffness", 0.9)):
+        lower, upper = (float(lines[name][place]) for place in (-3, -1))
+        assert lower <= true <= upper
     assert float(lines["knee"][2]) > 2.0 * float(lines["knee"][3])
 
 

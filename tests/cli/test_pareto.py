@@ -41,7 +41,7 @@ def pareto(folder: Path) -> subprocess.CompletedProcess:
 
 
 @pytest.fixture(scope="module")
-def job(tmp_path_factory):
+def job(tmp_path_factory, unchecked_module):
     """The folder in which the main job ran, and what it printed."""
     folder = tmp_path_factory.mktemp("job")
     (folder / "studies").mkdir()
@@ -157,6 +157,7 @@ class TestMainJob:
         assert len(read_study(folder / "studies" / "quick_battery.db").trials) == 160
         assert changed <= {"actuators.csv"}
 
+    @pytest.mark.long
     def test_a_stale_export_of_the_knee_is_begun_again(self, job):
         """And stopped there: it is left as it was."""
         folder, _ = job

@@ -78,11 +78,11 @@ from pareto_monoped import cli
 class Slow:
     def __del__(self):
         os.kill(os.getpid(), signal.SIGTERM)
-        time.sleep(5)
+        time.sleep(1)
 
 def command(**_):
     Slow()
-    time.sleep(5)
+    time.sleep(1)
 
 cli.cli.main = command
 cli.main()

@@ -23,6 +23,7 @@ def test_report_without_a_database_or_an_output_is_a_usage_error(arguments):
     assert result.exit_code == 2
 
 
+@pytest.mark.long
 def test_figures_alone_write_no_page(db, tmp_path):  # noqa: F811
     result = CliRunner().invoke(report, [str(db), "--figures", str(tmp_path / "figures")])
     assert result.exit_code == 0, result.output

@@ -102,6 +102,7 @@ def test_who_accepts_a_connection_and_stays_silent_is_no_scheduler(monkeypatch):
     assert time.monotonic() - began_s < 60.0
 
 
+@pytest.mark.long
 def test_each_worker_answers_for_itself_and_whoever_leaves_closes_the_connection(shared):
     """The same task for two workers, such as the greeting, is two tasks: else one would vouch for the other."""
     staff = DaskWorkers(shared.address)
@@ -141,7 +142,7 @@ def test_a_connection_that_comes_too_late_is_closed(shared, monkeypatch):
     until(lambda: made[0].status == "closed", 30.0)
 
 
-@pytest.mark.parametrize("how", ["cut off", "closed between two questions"])
+@pytest.mark.parametrize("how", [pytest.param("cut off", marks=pytest.mark.long), "closed between two questions"])
 def test_after_a_connection_has_ended_workers_have_executors_of_the_next_one(shared, monkeypatch, how):
     """The workers have stayed where they were; their old executors would send tasks into the ended connection."""
     monkeypatch.setattr("pareto_monoped.compute.cluster._CONNECT_S", 2.5)  # so long the client tries to come back
@@ -259,6 +260,7 @@ def test_the_scheduler_is_restarted(two):
     assert all("waiting up to 60 s" in line for line in told)
 
 
+@pytest.mark.long
 def test_a_scheduler_that_has_just_ended_is_not_said_to_lack_workers(tmp_path):
     """The next question to it is half a second away, and its answer several seconds."""
     with DaskHere(tmp_path) as here:

@@ -6,8 +6,10 @@ import importlib.util
 import sys
 
 from numba import types
+from numba.core.caching import NullCache
 
 from pareto_monoped.compute.compiled import c_function
+from pareto_monoped.jump import controller, planar, torques
 
 MODULE = """
 from numba import carray
@@ -34,3 +36,15 @@ def test_what_a_c_function_closes_over_tells_it_from_the_one_on_disk(tmp_path, m
         gc.collect()
         assert found.value == number
     assert len(list(tmp_path.rglob("*.nbc"))) == 2
+
+
+def test_what_is_kept_of_the_controller_calls_nothing_of_other_files():
+    """A clone that was updated went on with the old torques: of a kept caller, numba sees its own file alone."""
+    kept = set()
+    for module in (controller, planar, torques):
+        for name, value in vars(module).items():
+            if hasattr(value, "py_func") and not isinstance(value._cache, NullCache):
+                kept.add(name)
+                used = [vars(module).get(one) for one in value.py_func.__code__.co_names]
+                assert {one.__module__ for one in used if hasattr(one, "py_func")} <= {module.__name__}
+    assert kept == {"between", "rebound"}

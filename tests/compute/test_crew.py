@@ -73,6 +73,7 @@ def test_a_process_that_is_killed_is_replaced_and_nothing_is_lost(tmp_path):
     assert "was lost; its work goes elsewhere" in told[0]
 
 
+@pytest.mark.long
 def test_a_process_that_hangs_is_given_up_and_its_tasks_are_done_elsewhere(tmp_path):
     with crew(1, task_s=3.0, times=3.0) as (made, told):
         process = made.submit(tasks.short, 1).result(timeout=60)[1]

@@ -178,6 +178,7 @@ def test_two_answers_to_a_task_are_one_result():
     assert told == []
 
 
+@pytest.mark.long
 def test_a_late_task_is_given_to_one_more_worker_only():
     workers = {name: Worker(later=(slow,)) for name in ("one", "two", "three")}
     with crew(StaffHere(workers)) as (made, _):

@@ -261,7 +261,7 @@ def test_sigterm_lets_a_task_tidy_up(tmp_path):
     assert (tmp_path / "tidied").exists()
 
 
-@pytest.mark.parametrize("name", ["plain", "tidy"])
+@pytest.mark.parametrize("name", ["plain", pytest.param("tidy", marks=pytest.mark.long)])
 def test_processes_end_with_the_one_that_started_them(tmp_path, name):
     code = f"""
 from pathlib import Path

@@ -74,6 +74,7 @@ def searches() -> dict[str, tuple[Path, str]]:
 LESS = {
     "export": ("--formats", "dxf"),  # its files are those that other tests look at; here are its parts and its checks
     "run studies/quick.toml": ("--evaluations", "400"),  # half of them: of a search, only words are compared
+    "run studies/robust.toml": ("--evaluations", "20"),
 }
 """Commands that are run with further words, since they take long as they are shown."""
 LONG = {"studies.md"}

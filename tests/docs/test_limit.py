@@ -34,3 +34,17 @@ def test_both_ways_agree_on_five_designs():
     for row in numbers:
         search, *collocation = map(float, row[3:6])
         assert search / min(collocation) == pytest.approx(1.0, abs=0.02)
+
+
+def test_the_tracking_law_holds_on_robots_as_built():
+    """At least 95 percent of them reach 95 percent of the height, with two motors; torques over time reach fewer."""
+    (shown,) = re.findall(r"<!-- made by: python benchmarks/limit_as_built.py -->\n((?:\|.*\n)+)", PAGE)
+    numbers = rows(shown)[1:]
+    assert len(numbers) >= 5
+    assert len({row[0].split(",")[0] for row in numbers}) == 2
+    for row in numbers:
+        _, over_time, tracking = map(float, row[7].split(" / "))
+        assert tracking >= 95.0 > over_time
+        assert float(row[8].split(" / ")[2]) >= 95.0
+        weak_over_time, weak = map(float, row[4].split(" / "))
+        assert abs(weak) < 0.5 * abs(weak_over_time)

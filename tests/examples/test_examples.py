@@ -31,7 +31,7 @@ def test_every_example_is_known_here():
 
 
 # What it does is what the documents' commands do, too; it takes longer than all others together.
-LONG = {"export_a_pick"}
+LONG = {"constrained_study", "export_a_pick"}
 
 
 @pytest.mark.usefixtures("unchecked")

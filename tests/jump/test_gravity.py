@@ -38,7 +38,7 @@ def model_of(robots, calibration, i=0):
     return model, mujoco.MjData(model)
 
 
-@pytest.mark.parametrize("case", range(len(CASES)))
+@pytest.mark.parametrize("case", [0, *(pytest.param(case, marks=pytest.mark.long) for case in (1, 2)), 3])
 @pytest.mark.parametrize(
     ("calibration", "within_m"),
     [

@@ -199,14 +199,17 @@ def landed_by_hand(designs, calibration):
     return np.array(rows)
 
 
-@pytest.mark.parametrize(("timestep_s", "share"), [(2e-4, 0.015), (5e-5, 0.01)])
-def test_landings_are_the_documented_ones(timestep_s, share):
+@pytest.mark.parametrize(
+    ("timestep_s", "share", "count"),
+    [(2e-4, 0.015, 9), *(pytest.param(*how, 14, marks=pytest.mark.long) for how in ((2e-4, 0.015), (5e-5, 0.01)))],
+)
+def test_landings_are_the_documented_ones(timestep_s, share, count):
     """Peak loads of 14 designs by docs/landing.md.
 
     Measured at worst: 1.0 percent at the usual step and 0.3 at a quarter of it; gears of the hip, in which the impact
     rings with 300 Hz, 2.0 percent but for one design of 4.7, and 0.5 but for one of 3.6.
     """
-    designs, calibration = np.vstack((CASES, RANDOM, OTHER)), timed("reference", timestep_s=timestep_s)
+    designs, calibration = np.vstack((CASES, RANDOM, OTHER))[:count], timed("reference", timestep_s=timestep_s)
     found, by_hand = landed(designs, map_for("VT8020"), calibration), landed_by_hand(designs, calibration)
     assert set(found.status) == {"landed"}
     for k, name in enumerate(("landing_time_s", "landing_energy_j", "landing_absorbed_j", "landing_joule_heat_j")):
@@ -217,6 +220,6 @@ def test_landings_are_the_documented_ones(timestep_s, share):
     hips = off.pop("peak_gear_torque_hip_n_m")
     assert np.max(list(off.values())) < share
     assert hips.max() < 0.05
-    assert np.count_nonzero(hips < 0.03) >= 13
+    assert np.count_nonzero(hips < 0.03) >= count - 1
     assert not found.landing_peak_stop_torque_n_m.any()
     assert not by_hand[:, 7].any()

@@ -28,7 +28,11 @@ MAP = map_for("VT8020")
 ROBOTS = robot_arrays(CASES, MAP, ELASTIC.mass)
 
 
-@pytest.mark.parametrize("calibration", [ELASTIC, on_stand(ELASTIC), RIGID], ids=["elastic", "stand", "rigid"])
+@pytest.mark.parametrize(
+    "calibration",
+    [ELASTIC, on_stand(ELASTIC), pytest.param(RIGID, marks=pytest.mark.long)],
+    ids=["elastic", "stand", "rigid"],
+)
 def test_both_engines_land_alike(calibration):
     """Every measure; by 4e-10 at worst where drives are elastic."""
     designs = np.vstack([CASES, wild_designs(12, 5)])
@@ -40,7 +44,7 @@ def test_both_engines_land_alike(calibration):
         np.testing.assert_allclose(values, judged, rtol=1e-7, atol=1e-9, err_msg=measure.name)
 
 
-@pytest.mark.parametrize("row", range(4))
+@pytest.mark.parametrize("row", [0, *(pytest.param(row, marks=pytest.mark.long) for row in (1, 2)), 3])
 def test_energy_is_kept_over_jump_and_landing(row):
     """Measured: 2e-5 to 1.4e-4 of the motors' net work, which is a third of what they put in."""
     robots, control = take(ROBOTS, np.array([row])), control_of(CASES[[row]])
@@ -50,6 +54,7 @@ def test_energy_is_kept_over_jump_and_landing(row):
     assert 0.2 * alone.joint_work_j < balance.joint_work_j < 0.8 * alone.joint_work_j
 
 
+@pytest.mark.long
 def test_the_balance_does_not_drift_over_hops():
     """100 hops of Case C leave 2.0e-5 of their net work open, 10 leave 2.1e-5, one 2.3e-5; here 4."""
     robots, control = take(ROBOTS, np.array([3])), control_of(CASES[[3]])

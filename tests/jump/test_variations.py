@@ -9,7 +9,7 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES, PAPER_CONTROL, complete_control
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator, evaluate_robots
-from pareto_monoped.jump.variations import Variations
+from pareto_monoped.jump.variations import unvaried
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import robot_arrays
 
@@ -23,22 +23,7 @@ def evaluator(request):
 
 
 def neutral(n=2, **changes):
-    fields = {
-        "masses": np.ones((n, 3)),
-        "peak_torques": np.ones((n, 2)),
-        "no_load_speeds": np.ones(n),
-        "friction": np.ones(n),
-        "damping": np.ones(n),
-        "stop_stiffness": np.ones(n),
-        "foot_stiffness": np.ones(n),
-        "link_lengths_m": np.zeros((n, 2)),
-        "gains": np.ones((n, 3)),
-        "delays_s": np.zeros(n),
-        **dict.fromkeys(("gear_loss", "chain_loss", "winding_resistance", "rotor_inertia", "rebound"), np.ones(n)),
-        "stand_mass": np.ones(n),
-        "rail_friction": np.ones(n),
-    }
-    return Variations(**(fields | changes))
+    return replace(unvaried(n), **changes)
 
 
 def same(one, other, names=("height_m", "energy_j", "peak_foot_force_n", "stop_energy_j", "peak_chain_tension_n")):

@@ -3,8 +3,7 @@ import dataclasses
 import pytest
 
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.leg.chain_drives import CHAIN_DRIVES
-from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.leg.dimensions import CHAIN_DRIVES, leg_dimensions
 
 
 @pytest.fixture(scope="session")

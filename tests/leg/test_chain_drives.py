@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pareto_monoped.leg.chain_drives import CHAIN_DRIVES, SAFETY, chain_drive_for
+from pareto_monoped.leg.dimensions import CHAIN_DRIVES, SAFETY, chain_drive_for
 
 LIGHT, MIDDLE, HEAVY = CHAIN_DRIVES
 

@@ -9,8 +9,7 @@ from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.ratiomap import JointMaps
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.errors import DesignError
-from pareto_monoped.leg.chain_drives import CHAIN_DRIVES
-from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.leg.dimensions import CHAIN_DRIVES, leg_dimensions
 
 
 @pytest.mark.parametrize("other", ["VT8020", "U12"])

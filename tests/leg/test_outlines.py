@@ -6,8 +6,7 @@ import shapely
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.geometry.shapes import Arc
-from pareto_monoped.leg.chain_drives import CHAIN_DRIVES
-from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.leg.dimensions import CHAIN_DRIVES, leg_dimensions
 from pareto_monoped.leg.sandwich import Pulley, belt, mirrored, rounded, windows_between
 from pareto_monoped.leg.sprocket import sprocket_outline
 from pareto_monoped.leg.thigh_outline import thigh_outline

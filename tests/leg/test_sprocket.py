@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shapely
 
-from pareto_monoped.leg.chain_drives import CHAIN_DRIVES
+from pareto_monoped.leg.dimensions import CHAIN_DRIVES
 from pareto_monoped.leg.sprocket import sprocket_outline, sprocket_prisms
 from tests.leg.polygons import polygon
 

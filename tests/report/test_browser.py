@@ -114,7 +114,8 @@ def test_the_drawn_robot_has_the_dimensions_of_its_own_motor(source, source_u12,
         radius_m = float(tab.page.get_attribute("#stage g circle[fill='var(--metal)']", "r"))
         actuator = here.data.case_kit.hip.lookup(4.05)
         assert radius_m == pytest.approx(1e-3 * actuator.mount.housing_radius_mm)
-    tab.scroll_through()
+    tab.to_chart("link-chart")
+    tab.page.wait_for_function("() => document.getElementById('link-chart').layers?.length === 5")
     lines = tab.page.evaluate("document.getElementById('link-chart').layers.map((t) => t.name)")
     assert lines == ["thigh, VT8020", "shank, VT8020", "thigh, U12", "shank, U12", "published link"]
     published = tab.page.evaluate("(({ x, y }) => [x[0], y[0]])(document.getElementById('link-chart').layers.at(-1))")
@@ -295,7 +296,9 @@ def test_a_study_named_like_a_script_does_nothing(data, resimulation, folder, op
     tab.quiet(file)
 
 
-@pytest.mark.parametrize("kind", ["empty", "one", "none feasible", "unfinished"])
+@pytest.mark.parametrize(
+    "kind", ["empty", *(pytest.param(kind, marks=pytest.mark.long) for kind in ("one", "none feasible")), "unfinished"]
+)
 def test_studies_that_are_not_much_of_one_give_a_sensible_page(data, resimulation, folder, open_tab, kind):
     feasible = np.flatnonzero(data.trials["state"] == "feasible")
     keep = np.zeros(len(data.trials), dtype=bool)
@@ -388,6 +391,7 @@ def test_an_exported_design_can_be_turned(source, payload, folder, open_tab):
     tab.quiet(file)
 
 
+@pytest.mark.long
 def test_twenty_thousand_trials_make_a_small_page_whose_chart_a_selection_does_not_redraw(
     data, resimulation, folder, open_tab
 ):

@@ -63,7 +63,7 @@ def focused(tab, selector, most=120):
     raise AssertionError(f"{selector} cannot be reached with the keyboard")
 
 
-@pytest.mark.parametrize(("width", "height"), [(1440, 900), (390, 844)])
+@pytest.mark.parametrize(("width", "height"), [(1440, 900), pytest.param(390, 844, marks=pytest.mark.long)])
 def test_the_keyboard_alone_asks_walks_zooms_sorts_and_keeps(file, open_tab, width, height):
     tab = open_tab(file, width=width, height=height)
     keys = tab.page.keyboard

@@ -127,9 +127,17 @@ def test_a_link_brings_the_same_view_back(tab, file, card, limits, open_tab):
 
 @pytest.mark.parametrize(
     "damage",
-    ["at=0:999999", "range=height_m:low:", "range=none:1:2", "range=height_m:2:1", "shine=1", "%", "hide=x",
-     "at=0:case:none", "keep=0:x", "sort=none", "keep=0:1:%E0%A4%A"],
-)  # fmt: skip
+    [
+        *("at=0:999999", "range=height_m:low:", "%", "keep=0:x"),
+        *(
+            pytest.param(damage, marks=pytest.mark.long)
+            for damage in (
+                *("range=none:1:2", "range=height_m:2:1", "shine=1", "hide=x"),
+                *("at=0:case:none", "sort=none", "keep=0:1:%E0%A4%A"),
+            )
+        ),
+    ],
+)
 def test_a_damaged_address_is_left_out_with_one_line(tab, damage):
     tab.page.evaluate("location.hash = '#view=1&log=x'")
     tab.page.wait_for_function("() => document.getElementById('page-note').textContent === ''")

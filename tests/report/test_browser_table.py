@@ -124,6 +124,7 @@ def test_a_tick_keeps_a_design_and_six_are_the_most(tab, card):
     assert [boxes.nth(i).is_checked() for i in range(7)] == [True] * 5 + [False] * 2
 
 
+@pytest.mark.long
 def test_a_table_of_twenty_thousand_has_few_rows_in_the_document(data, resimulation, folder, open_tab):
     big = grown(data, 20_000)
     made = folder / "big_table.html"

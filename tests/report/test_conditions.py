@@ -21,7 +21,7 @@ from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
 
-SETS = pytest.mark.parametrize("sets", [60, pytest.param(500, marks=pytest.mark.long)])
+SETS = pytest.mark.parametrize("sets", [15, pytest.param(500, marks=pytest.mark.long)])
 """How many sets of conditions are drawn."""
 STUDIES = {
     "mechanical": {"seed": 1},
@@ -152,6 +152,7 @@ def weighted(designs, objectives, weights):
     }
 
 
+@pytest.mark.long
 def test_choosers_on_the_front_within_are_scaled_to_the_whole_front(studies, records):
     """A condition that the answer meets never changes it; one that it misses brings the next best."""
     rng = random.Random(8)

@@ -129,6 +129,7 @@ def test_two_fronts_lie_in_one_chart_by_either_energy(two, folder, open_tab):
     tab.quiet(file)
 
 
+@pytest.mark.long
 def test_no_page_is_wider_than_its_window(three, two, folder, open_tab):
     for name, sources in (("three_objectives.html", [three]), ("two_fronts.html", two)):
         tab = open_tab(written(folder, name, sources))

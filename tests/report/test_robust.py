@@ -6,13 +6,15 @@ from importlib import resources
 import numpy as np
 import pytest
 
+from pareto_monoped.analysis import limit
 from pareto_monoped.analysis.alternatives import alternatives
 from pareto_monoped.analysis.robustness import robust, robust_front, robust_trials
 from pareto_monoped.analysis.sensitivity import sensitivity
 from pareto_monoped.measures import ROBUST_NAMES
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.page import build, embedded_json, page
-from pareto_monoped.storage.extra_rows import read_robustness, read_sensitivity
+from pareto_monoped.report.robust import best_of
+from pareto_monoped.storage.extra_rows import read_limits, read_robustness, read_sensitivity
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.uncertainty.settings import load_uncertainty
 from tests.report.conftest import grown, made, unpacked
@@ -29,9 +31,19 @@ def stored(folder):
 
 
 @pytest.fixture(scope="module")
-def uncertain(folder, stored, resimulation):
+def searched(folder, stored):
+    """Limits of the same designs, after few jumps."""
+    db = folder / "surrogate_11_60.db"
+    with pytest.MonkeyPatch.context() as patch:  # few robots as built, of which the page tells nothing
+        patch.setattr(limit, "sampling", lambda *_: (load_uncertainty(), 16, 1))
+        limit.limits(db, read_study(db).front().iloc[:4], jumps=60, workers=2)
+    return read_limits(db)
+
+
+@pytest.fixture(scope="module")
+def uncertain(folder, stored, searched, resimulation):
     data = read_study(folder / "surrogate_11_60.db")
-    return Source(data=data, resimulation=resimulation, models={}, robustness=stored)
+    return Source(data=data, resimulation=resimulation, models={}, robustness=stored, limits=searched)
 
 
 @pytest.fixture(scope="module")
@@ -54,8 +66,30 @@ def test_the_page_has_what_is_stored(shown, uncertain, stored):
     assert {q.name for q in shown.quantities} >= set(card.robust.packed)
 
 
+@pytest.mark.parametrize("strength", [True, False])
+def test_the_page_has_the_front_of_the_best_torque(strength, uncertain, searched):
+    """Of jumps that overload no part, if the study asks for them: no other, nor a design, is as high on as little."""
+    data = replace(uncertain.data, study=replace(uncertain.data.study, strength=strength))
+    first, known = next(iter(searched.items()))
+    searched = searched | {first: replace(known, result=replace(known.result, controller_gap_held=None))}
+    best = best_of(data, searched, {trial: trial for trial in searched})
+    end = "_held" if strength else ""
+    assert (best.energy, best.held) == ("energy_j", strength)
+    found = {trial: stored.result for trial, stored in searched.items()}
+    for trial, gap in zip(best.rows, best.gap, strict=True):
+        expected = getattr(found[trial], f"controller_gap{end}")
+        assert gap == (expected if expected is None else pytest.approx(expected, rel=1e-3))
+    jumps = [(trial, getattr(one, f"{name}{end}")) for trial, one in found.items() for name in ("least", "greatest")]
+    every = {(trial, jump.height_m, jump.energy_j) for trial, jump in jumps if jump is not None}
+    own = {(-1, row.height_m, row.energy_j) for row in data.sound.itertuples()}
+    front = [a for a in every if not any(b[1] >= a[1] and b[2] <= a[2] and b != a for b in every | own)]
+    assert best.front == [pytest.approx(one, rel=1e-4) for one in sorted(front, key=lambda one: one[1])]
+    assert 1 < len(front) < len(every)
+
+
 def test_a_study_without_robustness_has_none(payload):
     assert payload.studies[0].robust is None
+    assert payload.studies[0].best is None
     assert not {q.name for q in payload.quantities} & set(ROBUST_NAMES)
 
 
@@ -135,7 +169,7 @@ def test_the_scripts_read_the_same_numbers(shown, stored, browser):
 
 
 @pytest.mark.browser
-def test_the_page_tells_numerical_and_physical_tests_apart(shown, stored, folder, open_tab):
+def test_the_page_tells_numerical_and_physical_tests_apart(shown, stored, searched, folder, open_tab):
     file = folder / "robust.html"
     file.write_text(page(shown), encoding="utf-8")
     tab = open_tab(file)
@@ -159,4 +193,11 @@ def test_the_page_tells_numerical_and_physical_tests_apart(shown, stored, folder
         else:
             tab.expects("#audit", f"Not tested as built: pareto-monoped robust DB --trial {trial}")
         tab.expects("#audit", "neither rounding nor the time step")
+        if trial in searched:
+            tab.expects("#audit", f"takes {searched[trial].result.controller_gap:.1f} % less of mechanical energy")
+    found = "document.getElementById('front-chart').layers.find((t) => t.name === 'best')"
+    assert tab.page.evaluate(f"{found}.x") == pytest.approx([energy for _, _, energy in card.best.front])
+    assert tab.page.evaluate(f"{found}.y") == pytest.approx([height for _, height, _ in card.best.front])
+    tab.page.locator("[data-show=best]").click()
+    assert tab.page.evaluate(f"{found} === undefined")
     tab.quiet(file)

@@ -10,8 +10,7 @@ from pareto_monoped.actuator.service.sheet import service_sheet
 from pareto_monoped.design import GRAVITY_M_PER_S2, PAPER_CASES
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle
-from pareto_monoped.leg.chain_drives import CHAIN_DRIVES
-from pareto_monoped.leg.dimensions import leg_dimensions
+from pareto_monoped.leg.dimensions import CHAIN_DRIVES, leg_dimensions
 from pareto_monoped.robot.build import build_robot
 
 SERVICE = default_service()

@@ -4,6 +4,7 @@ import json
 import shutil
 import sqlite3
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -51,7 +52,10 @@ def coordinates_for(study):
     return searched_coordinates(study, [map_of(load_motor(name), study.rules) for name in study.motors])
 
 
-COORDINATES = coordinates_for(several(ALL))
+@cache
+def of_all():
+    """Coordinates of six motors, whose maps take two seconds."""
+    return coordinates_for(several(ALL))
 
 
 @pytest.mark.parametrize(
@@ -102,25 +106,25 @@ def test_a_list_survives_storage_and_one_motor_is_stored_as_before():
 @settings(max_examples=100, deadline=None)
 @given(st.lists(st.lists(st.floats(0.0, 1.0), min_size=8, max_size=8), min_size=1, max_size=8))
 def test_coordinates_and_designs_are_each_others_inverse(unit):
-    space = COORDINATES.space
+    space = of_all().space
     lower, upper = space.edges
     values = space.snap(lower + np.array(unit) * (upper - lower))
     assert np.array_equal(space.snap(values), values)
-    designs, motors = COORDINATES.designs(values), COORDINATES.motors_of(values)
-    assert np.array_equal(COORDINATES.values(designs, motors), values)
-    for design, k in zip(designs, COORDINATES.kits(motors), strict=True):
+    designs, motors = of_all().designs(values), of_all().motors_of(values)
+    assert np.array_equal(of_all().values(designs, motors), values)
+    for design, k in zip(designs, of_all().kits(motors), strict=True):
         for ratio in RATIOS:
             real = design[NAMES.index(ratio)]
-            assert COORDINATES.maps[k].of(ratio.removesuffix("_ratio")).lookup(real).ratio == real
+            assert of_all().maps[k].of(ratio.removesuffix("_ratio")).lookup(real).ratio == real
 
 
 @pytest.mark.parametrize("motor", range(len(ALL)))
 def test_both_ends_of_every_list_and_all_between_are_reached_in_equal_shares(motor):
-    space = COORDINATES.space
+    space = of_all().space
     place, gears = space.names.index("knee_ratio"), space.choices[0].motors[motor].gears["knee_ratio"]
     values = np.tile(space.lower, (20001, 1))
     values[:, place], values[:, -1] = np.linspace(0.0, 1.0, len(values)), motor
-    ratios = COORDINATES.designs(space.snap(values))[:, NAMES.index("knee_ratio")]
+    ratios = of_all().designs(space.snap(values))[:, NAMES.index("knee_ratio")]
     assert ratios[0] == gears[0].ratio
     assert ratios[-1] == gears[-1].ratio
     found, counts = np.unique(ratios, return_counts=True)
@@ -129,25 +133,25 @@ def test_both_ends_of_every_list_and_all_between_are_reached_in_equal_shares(mot
 
 
 def test_changing_the_motor_keeps_the_place_in_the_list():
-    space = COORDINATES.space
+    space = of_all().space
     values = np.tile(space.lower, (len(ALL), 1))
     values[:, -1] = np.arange(len(ALL))
     for share in (0.0, 1.0):
         values[:, space.names.index("hip_ratio")] = share
-        ratios = COORDINATES.designs(space.snap(values))[:, NAMES.index("hip_ratio")]
+        ratios = of_all().designs(space.snap(values))[:, NAMES.index("hip_ratio")]
         lists = [motor.gears["hip_ratio"] for motor in space.choices[0].motors]
         assert ratios.tolist() == [gears[-1 if share else 0].ratio for gears in lists]
 
 
 def test_limits_of_a_variable_hold_every_design_of_every_motor():
-    space = COORDINATES.space
+    space = of_all().space
     values = np.tile(space.lower, (2 * len(ALL), 1))
     values[:, -1] = np.tile(np.arange(len(ALL)), 2)
     for name in space.names[:-1]:
         ends = values.copy()
         ends[len(ALL) :, space.names.index(name)] = space.upper[space.names.index(name)]
-        found = COORDINATES.designs(ends)[:, NAMES.index(name)]
-        assert COORDINATES.limits(name) == (found.min(), found.max())
+        found = of_all().designs(ends)[:, NAMES.index(name)]
+        assert of_all().limits(name) == (found.min(), found.max())
     assert len({gears[-1].ratio for gears in (m.gears["hip_ratio"] for m in space.choices[0].motors)}) > 1
 
 
@@ -183,7 +187,7 @@ def search(study, generations=6, algorithm=None):
 def test_every_algorithm_asks_for_points_of_the_space_and_for_none_twice(name):
     study = several(ALL, algorithm={"name": name, "population": 20})
     _, history = search(study)
-    values, space = np.vstack([asked for asked, _ in history]), COORDINATES.space
+    values, space = np.vstack([asked for asked, _ in history]), of_all().space
     assert len(values) == 120
     assert np.array_equal(space.snap(values), values)
     assert len({row.tobytes() for row in values}) == len(values)
@@ -218,17 +222,15 @@ def test_a_search_ends_when_every_design_with_every_motor_was_tried(name):
 
 def test_the_surrogate_tells_actuators_apart_by_what_they_do():
     """Greatest torque and speed at the joint and mass, against the actuators themselves."""
-    space = COORDINATES.space
+    space = of_all().space
     values = space.snap(np.random.default_rng(1).uniform(*space.edges, (200, len(space.names))))
     features = features_of(space)
     assert len(features.lower) == 5 + 2 * 3
     scaled = features.scaled(values)
     assert np.abs(scaled).max() <= 1.0 + 1e-12
     knee = space.names.index("knee_ratio")
-    designs, kits = COORDINATES.designs(values), COORDINATES.kits_of(values)
-    actuators = [
-        COORDINATES.maps[k].knee.lookup(d[NAMES.index("knee_ratio")]) for d, k in zip(designs, kits, strict=True)
-    ]
+    designs, kits = of_all().designs(values), of_all().kits_of(values)
+    actuators = [of_all().maps[k].knee.lookup(d[NAMES.index("knee_ratio")]) for d, k in zip(designs, kits, strict=True)]
     for place, known in (
         (knee, [np.log(a.peak_torque_n_m) for a in actuators]),
         (knee + 1, [np.log(a.no_load_speed_rad_per_s) for a in actuators]),

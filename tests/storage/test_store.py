@@ -9,9 +9,10 @@ import numpy as np
 import optuna
 import pytest
 
-from pareto_monoped.errors import DiskError
+from pareto_monoped.errors import DatabaseError, DiskError
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.store import Store
+from pareto_monoped.study.run import resume, run
 from tests.study.support import made_database, made_evaluations, made_generation, made_study
 
 
@@ -109,3 +110,17 @@ def test_optuna_dashboard_reads_it(tmp_path):
     detail = json.loads(body)
     assert len(detail["trials"]) == 6
     assert detail["trials"][1]["constraints"] == pytest.approx([0.03 / 0.55])
+
+
+@pytest.mark.parametrize("column", [b"param_name VARCHAR", b"datetime_complete DATETIME", b"objective INTEGER"])
+def test_a_refused_resume_leaves_a_file_with_a_damaged_column_of_optunas_as_it_was(tmp_path, column):
+    """Found by a storm of flipped bits: it had stored that it was opened before it met the column."""
+    path = tmp_path / "s.db"
+    run(made_study(evaluations=4), path, workers=1)
+    damaged = path.read_bytes().replace(column, bytes([column[0] ^ 1]) + column[1:])
+    assert damaged != path.read_bytes()
+    path.write_bytes(damaged)
+    with pytest.raises(DatabaseError, match="no such column"):
+        resume(path, evaluations=8, workers=1)
+    assert path.read_bytes() == damaged
+    assert [one.name for one in tmp_path.iterdir()] == ["s.db"]

@@ -81,6 +81,7 @@ def two_processes():
         yield crew, told
 
 
+@pytest.mark.long
 def test_on_two_processes(on_threads, two_processes, tmp_path):
     crew, told = two_processes
     counting = Counting(crew)

@@ -198,6 +198,7 @@ def db(tmp_path_factory):
     return path
 
 
+@pytest.mark.long
 def test_the_database_names_the_motors_of_each_design(db):
     data = read_study(db)
     with sqlite3.connect(db) as connection:

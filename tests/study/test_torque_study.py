@@ -68,7 +68,7 @@ def test_what_a_file_cannot_say_is_refused_in_one_line(changes, words):
 def test_a_study_that_was_stopped_goes_on_as_if_it_never_was(made, tmp_path):
     """Also in the middle of a generation."""
     db = tmp_path / "parts.db"
-    for count in (7, 33, 60):
+    for count in (33, 60):
         run(study(), db, evaluations=count, workers=1)
     pd.testing.assert_frame_equal(trials(db), trials(made))
 
@@ -97,8 +97,24 @@ def test_columns_and_readers_have_the_knots_that_are_searched(made):
     assert np.isfinite(loaded.front()["knee_knot_6"]).all()
 
 
-@pytest.mark.parametrize("algorithm", ["surrogate", "weighted_cmaes"])
+@pytest.mark.parametrize("algorithm", ["surrogate", pytest.param("weighted_cmaes", marks=pytest.mark.long)])
 def test_other_searches_begin_there_too(algorithm, tmp_path):
     settings = {"name": algorithm, "population": 10} | ({"iterations": 2} if algorithm == "weighted_cmaes" else {})
     run(study(algorithm=settings, evaluations=20), tmp_path / "s.db", workers=1)
     assert trials(tmp_path / "s.db").head(10)["height_m"].median() > 0.7
+
+
+def test_a_study_of_the_tracking_law_begins_with_the_torques_of_the_virtual_leg(tmp_path):
+    """Their damping stays a variable, and their knots leave to it what it tells the motors."""
+    one = study(
+        controller={"kind": "tracking", "knots": 6},
+        variables={},
+        evaluations=20,
+        algorithm={"name": "nsga2", "population": 20},
+    )
+    assert "damping_n_s_per_m" in one.free
+    assert not {"stiffness_n_per_m", "push_time_s"} & set(one.free)
+    run(one, tmp_path / "t.db", workers=1)
+    begun = trials(tmp_path / "t.db")
+    assert begun["height_m"].median() > 0.7
+    assert begun["damping_n_s_per_m"].max() > 1.0

@@ -8,7 +8,7 @@ import pytest
 
 from tests.tools.conftest import TOOLS
 
-CALLS, SEED = 9, 1
+CALLS, SEED = 4, 1
 
 
 def fuzzed(*words):

@@ -18,6 +18,7 @@ def storm(*words):
     return done.stdout
 
 
+@pytest.mark.long
 def test_damage_never_passes():
     said = storm("tools/damage_storm.py", "--damages", "3", "--seed", "3")
     assert "3 damages" in said
@@ -30,6 +31,7 @@ def test_much_damage_never_passes():
 
 
 @needs_compiler
+@pytest.mark.long
 def test_kills_at_all_moments():
     said = storm("tools/kill_storm.py", "--kills", "3", "--kinds", "1", "--seed", "5")
     assert "lost, bricked or different: 0" in said

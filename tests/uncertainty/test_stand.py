@@ -77,6 +77,7 @@ def test_a_search_draws_what_its_calibration_has(name, count):
     assert sampling_of({"stand_mass": {"lower": 0.0, "upper": 0.3, "source": "scales"}}, source="t").ranges.stand_mass
 
 
+@pytest.mark.long
 def test_robust_and_sensitivity_of_a_study_on_the_stand(tmp_path):
     db = tmp_path / "s.db"
     file = {"name": "s", "evaluations": 8, "audit": False, "calibration": "stand", "algorithm": {"name": "random"}}

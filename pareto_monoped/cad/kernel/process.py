@@ -23,7 +23,7 @@ def solid_facts(parts: list[Part]) -> list[SolidFacts]:
 def step_files(assembly: StepAssembly) -> tuple[bytes, dict[str, bytes]]:
     """The STEP file of the assembly, and those of its unique parts by name."""
     parts = {
-        name: _part_file(part.prisms, part.balls, part.bevels, name, part.material.colour)
+        name: _part_file(part.prisms, part.balls, part.bevels, name, step.Substance.of(part))
         for name, part in assembly.parts.items()
     }
     solids = {name: solid_of(part) for name, part in assembly.parts.items()}
@@ -37,9 +37,9 @@ def step_files(assembly: StepAssembly) -> tuple[bytes, dict[str, bytes]]:
 # As many as ``solid_from`` keeps: 20 MB at most.
 @lru_cache(maxsize=256)
 def _part_file(
-    prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple[Bevel, ...], name: str, colour: step.Colour
+    prisms: tuple[Prism, ...], balls: tuple[Ball, ...], bevels: tuple[Bevel, ...], name: str, substance: step.Substance
 ) -> bytes:
-    return step.part_step(solid_from(prisms, balls, bevels), name, colour)
+    return step.part_step(solid_from(prisms, balls, bevels), name, substance)
 
 
 # As many as ``solid_from`` keeps.

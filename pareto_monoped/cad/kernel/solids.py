@@ -25,8 +25,17 @@ from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp, TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Wire
 
-from pareto_monoped.cad.shape.outlines import Contour, Points, Spline, ends, on_arc, regions
-from pareto_monoped.cad.shape.stacks import regrouped, stands_on, without_teeth
+from pareto_monoped.cad.shape.outlines import (
+    Contour,
+    Points,
+    Spline,
+    ends,
+    on_arc,
+    regions,
+    regrouped,
+    stands_on,
+    without_teeth,
+)
 from pareto_monoped.geometry.features import Bevel
 from pareto_monoped.geometry.parts import Ball, Part, Prism
 from pareto_monoped.geometry.shapes import Circle, Line

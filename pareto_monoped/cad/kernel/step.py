@@ -1,7 +1,8 @@
-"""STEP files (ISO 10303-21) with names and colours; the time stamp is fixed, so the same robot gives the same bytes.
+"""STEP files (AP242) with names, colours and materials; the time stamp is fixed: the same robot gives the same bytes.
 
 The kernel writes geometry and names. It would write colours in an order that changes from run to run, so the styles
-(ISO 10303-46) are added here. Each solid is written once, and the file of the assembly is made from those of its parts:
+(ISO 10303-46) are added here, and so are materials with their densities (ISO 10303-45), whose units it gets wrong. Each
+solid is written once, and the file of the assembly is made from those of its parts:
 
 The kernel writes the assembly with stand-ins, one small solid per part. In a STEP file, a part's shape is a run of
 consecutive entities: its representation, its solids and their context. Each stand-in's run is replaced by the run of
@@ -39,6 +40,7 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool
 from OCP.XSControl import XSControl_WorkSession
 
 from pareto_monoped.cad.kernel.client import StepAssembly
+from pareto_monoped.geometry.parts import Part
 
 _LINK = re.compile(
     rb"^#(\d+) = (SHAPE_DEFINITION_REPRESENTATION|PRODUCT_DEFINITION_SHAPE|PRODUCT_DEFINITION|"
@@ -50,7 +52,8 @@ _REFERENCE = re.compile(rb"(?<!'Context )#(\d+)")
 _AFTER = 4  # entities of a context after its first: the units of length, plane and solid angle, and the uncertainty
 _AXES = 4
 """Entities of the axes at the origin, which all representations of a file share: placement, point, two directions."""
-Colour = tuple[float, float, float]
+_SCHEMA = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF {1 0 10303 442 1 1 4 }"  # the kernel's own for AP242DIS
+_GRAMS = 1e-3  # per cubic centimetre, of a density in kg per m3
 TIMESTAMP = datetime(2025, 1, 1)  #: The time in every STEP file: the real time would make each export differ.
 _METRES = 1e-3  # the documents' unit: millimetres
 _USAGE = re.compile(rb"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\()\s*'\d+'([^;]*;)")
@@ -60,10 +63,31 @@ _END = b"ENDSEC;\nEND-ISO-10303-21;"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Substance:
+    """What a STEP file says of a part besides its shape."""
+
+    colour: tuple[float, float, float]
+    material: str
+    grade: str  #: alloy or steel; '' where the maker is free to choose
+    density_g_per_cm3: float
+
+    @classmethod
+    def of(cls, part: Part) -> "Substance":
+        """Return the substance of a part."""
+        return cls(
+            colour=part.material.colour,
+            material=part.material.name,
+            grade="" if part.grade is None else part.grade.name,
+            density_g_per_cm3=round(_GRAMS * part.material.density_kg_per_m3, 6),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Shape:
     """A part's shape in a STEP file."""
 
     name: str  #: of the part
+    definition: int  #: of the product whose shape it is
     number: int  #: of its representation, the first entity
     axes: int  #: of the axes at the origin; in a part's file these follow the representation
     solid: int  #: of its last solid
@@ -87,13 +111,15 @@ def shapes_in(text: bytes) -> list[Shape]:
         definition, representation = _REFERENCE.findall(link[3])
         if representation not in links:
             continue  # an assembly
+        steps = [definition]
         for _ in range(3):  # shape -> definition -> formation -> product
-            definition = _REFERENCE.findall(links[definition][3])[0]
+            steps.append(_REFERENCE.findall(links[steps[-1]][3])[0])
         axes, *solids, context = (int(number) for number in _REFERENCE.findall(links[representation][3]))
         start = links[representation].start()
         shapes.append(
             Shape(
-                name=links[definition][3].split(b"'")[1].decode(),
+                name=links[steps[-1]][3].split(b"'")[1].decode(),
+                definition=int(steps[1]),
                 number=int(representation),
                 axes=axes,
                 solid=solids[-1],
@@ -113,9 +139,11 @@ def spliced(frame: bytes, parts: Mapping[str, bytes]) -> tuple[bytes, list[Shape
     growth = [_count(shape) - _count(stand_in) for shape, stand_in in zip(own, stand_ins, strict=True)]
     shifts = [0, *accumulate(growth)]
 
+    def moved(number: int) -> int:
+        return number + shifts[bisect_left(lasts, number)]
+
     def in_frame(found: re.Match[bytes]) -> bytes:
-        number = int(found[1])
-        return b"#%d" % (number + shifts[bisect_left(lasts, number)])
+        return b"#%d" % moved(int(found[1]))
 
     pieces, shapes, done = [], [], 0
     for stand_in, shape, shift in zip(stand_ins, own, shifts, strict=False):
@@ -123,7 +151,13 @@ def spliced(frame: bytes, parts: Mapping[str, bytes]) -> tuple[bytes, list[Shape
         pieces.append(_moved(parts[shape.name], shape, stand_in.number + shift, stand_in.axes))
         ahead = stand_in.number + shift - shape.number - _AXES
         shapes.append(
-            replace(shape, number=stand_in.number + shift, solid=shape.solid + ahead, context=shape.context + ahead)
+            replace(
+                shape,
+                definition=moved(stand_in.definition),
+                number=stand_in.number + shift,
+                solid=shape.solid + ahead,
+                context=shape.context + ahead,
+            )
         )
         done = stand_in.stop
     pieces.append(_REFERENCE.sub(in_frame, frame[done:]))
@@ -185,7 +219,9 @@ class _Document:
         return label
 
     def text(self, name: str) -> bytes:
-        """Return the file without colours."""
+        """Return the file without colours and materials."""
+        STEPCAFControl_Controller.Init_s()
+        Interface_Static.SetCVal_s("write.step.schema", "AP242DIS")
         self.shapes.UpdateAssemblies()
         for printer in Message.DefaultMessenger_s().Printers():
             printer.SetTraceLevel(Message_Gravity.Message_Fail)
@@ -198,9 +234,9 @@ class _Document:
             header = APIHeaderSection_MakeHeader(0)
             header.Apply(model)
         header.SetName(TCollection_HAsciiString(name))
+        header.SetSchemaIdentifiersValue(1, TCollection_HAsciiString(_SCHEMA))
         header.SetTimeStamp(TCollection_HAsciiString(TIMESTAMP.isoformat()))
         header.SetOriginatingSystem(TCollection_HAsciiString("pareto-monoped"))
-        STEPCAFControl_Controller.Init_s()
         # Curves on surfaces would double time and size; planes and cylinders do not need them.
         Interface_Static.SetIVal_s("write.surfacecurve.mode", 0)
         writer.Transfer(self.document, STEPControl_StepModelType.STEPControl_AsIs)
@@ -209,12 +245,12 @@ class _Document:
         return _renumbered(stream.getvalue())
 
 
-def part_step(solid: TopoDS_Shape, name: str, colour: Colour) -> bytes:
+def part_step(solid: TopoDS_Shape, name: str, substance: Substance) -> bytes:
     """Return one part, in millimetres."""
     document = _Document()
     document.part(solid, name)
     text = document.text(name)
-    return _coloured(text, shapes_in(text), {name: colour})
+    return _finished(text, shapes_in(text), {name: substance})
 
 
 def assembly_step(
@@ -226,11 +262,11 @@ def assembly_step(
     """
     stand_ins = {name: compounds.get(name) or BRepPrimAPI_MakeSphere(1.0).Shape() for name in assembly.parts}
     text, shapes = spliced(tree_step(assembly, stand_ins), parts)
-    return _coloured(text, shapes, {name: part.material.colour for name, part in assembly.parts.items()})
+    return _finished(text, shapes, {name: Substance.of(part) for name, part in assembly.parts.items()})
 
 
 def tree_step(assembly: StepAssembly, solids: Mapping[str, TopoDS_Shape]) -> bytes:
-    """Return the same as the kernel writes it from solids by name, without colours. No two names may share a solid."""
+    """Return what the kernel writes of solids by name: no colours, no materials. No two names may share a solid."""
     document = _Document()
     labels = {name: document.part(solid, name) for name, solid in solids.items()}
     units = []
@@ -259,23 +295,45 @@ def _renumbered(text: bytes) -> bytes:
     return _USAGE.sub(usage, text)
 
 
-def _coloured(text: bytes, shapes: Sequence[Shape], colours: Mapping[str, Colour]) -> bytes:
-    """Add a colour to the solid of each named shape, as the kernel would: one style per solid."""
+def _finished(text: bytes, shapes: Sequence[Shape], substances: Mapping[str, Substance]) -> bytes:
+    """Add colour and material to each named shape: one style per solid, a name and a density per product."""
     number = int(_NUMBER.findall(text, max(len(text) - _TAIL, 0))[-1])
     lines = []
     for shape in shapes:
-        red, green, blue = colours[shape.name]
-        a = [number + k for k in range(1, 10)]
-        number += 9
-        lines += [
-            f"#{a[0]} = MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',(#{a[1]}),#{shape.context});",
-            f"#{a[1]} = STYLED_ITEM('color',(#{a[2]}),#{shape.solid});",
-            f"#{a[2]} = PRESENTATION_STYLE_ASSIGNMENT((#{a[3]}));",
-            f"#{a[3]} = SURFACE_STYLE_USAGE(.BOTH.,#{a[4]});",
-            f"#{a[4]} = SURFACE_SIDE_STYLE('',(#{a[5]}));",
-            f"#{a[5]} = SURFACE_STYLE_FILL_AREA(#{a[6]});",
-            f"#{a[6]} = FILL_AREA_STYLE('',(#{a[7]}));",
-            f"#{a[7]} = FILL_AREA_STYLE_COLOUR('',#{a[8]});",
-            f"#{a[8]} = COLOUR_RGB('',{red!r},{green!r},{blue!r});",
-        ]
+        own = substances[shape.name]
+        red, green, blue = own.colour
+        entities = (
+            f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',(@1),#{shape.context})",
+            f"STYLED_ITEM('color',(@2),#{shape.solid})",
+            "PRESENTATION_STYLE_ASSIGNMENT((@3))",
+            "SURFACE_STYLE_USAGE(.BOTH.,@4)",
+            "SURFACE_SIDE_STYLE('',(@5))",
+            "SURFACE_STYLE_FILL_AREA(@6)",
+            "FILL_AREA_STYLE('',(@7))",
+            "FILL_AREA_STYLE_COLOUR('',@8)",
+            f"COLOUR_RGB('',{red!r},{green!r},{blue!r})",
+            f"PROPERTY_DEFINITION('material property','material name',#{shape.definition})",
+            "PROPERTY_DEFINITION_REPRESENTATION(@9,@11)",
+            f"REPRESENTATION('material name',(@12),#{shape.context})",
+            f"DESCRIPTIVE_REPRESENTATION_ITEM('{_escaped(own.material)}','{_escaped(own.grade)}')",
+            f"PROPERTY_DEFINITION('material property','density',#{shape.definition})",
+            "PROPERTY_DEFINITION_REPRESENTATION(@13,@15)",
+            f"REPRESENTATION('density',(@16),#{shape.context})",
+            f"MEASURE_REPRESENTATION_ITEM('density measure',POSITIVE_RATIO_MEASURE({own.density_g_per_cm3!r}),@17)",
+            "DERIVED_UNIT((@18,@20))",
+            "DERIVED_UNIT_ELEMENT(@19,1.)",
+            "(MASS_UNIT()NAMED_UNIT(*)SI_UNIT($,.GRAM.))",
+            "DERIVED_UNIT_ELEMENT(@21,-3.)",
+            "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.CENTI.,.METRE.))",
+        )
+        first = number + 1
+        for entity in entities:
+            number += 1
+            numbered = re.sub(r"@(\d+)", lambda found: f"#{first + int(found[1])}", entity)  # noqa: B023
+            lines.append(f"#{number} = {numbered};")
     return text.replace(_END, "\n".join([*lines, ""]).encode() + _END)
+
+
+def _escaped(text: str) -> str:
+    """Return a string as such files have it: in ASCII, apostrophes twice."""
+    return text.encode("ascii", "replace").decode().replace("'", "''")

@@ -17,8 +17,7 @@ import manifold3d as m3
 import numpy as np
 from numpy.typing import NDArray
 
-from pareto_monoped.cad.shape.outlines import all_polygons
-from pareto_monoped.cad.shape.stacks import is_on, regrouped
+from pareto_monoped.cad.shape.outlines import all_polygons, is_on, regrouped
 from pareto_monoped.geometry.features import Bevel
 from pareto_monoped.geometry.parts import Ball, Part, Prism
 from pareto_monoped.geometry.shapes import Shape

@@ -80,6 +80,7 @@ ALWAYS = (
     "bom.csv",
     "strength.csv",
     "tolerances.csv",
+    "cad/model.py",
     "parameters.csv",
     "monoped_equations.txt",
     "checks.json",

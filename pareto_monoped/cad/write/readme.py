@@ -85,8 +85,15 @@ def _files(formats: Sequence[str]) -> Iterator[str]:
     for name in formats:
         yield from (f"| `{path}` | {purpose} |" for path, purpose in FILES[name])
     yield "| `bom.csv` | parts list: count, material, process, mass, size, safety factors, cost |"
-    yield "| `parameters.csv` | all dimensions by name: value, unit, part, meaning |"
-    yield "| `monoped_equations.txt` | the same as global variables: SolidWorks links a model to this file |"
+    yield (
+        "| `cad/model.py` | the model to change: `python cad/model.py thigh_length=330` makes all solids and the "
+        "assembly anew, with build123d alone |"
+    )
+    yield "| `parameters.csv` | its drivers, and what follows from them: value, unit, formula, meaning |"
+    yield (
+        "| `monoped_equations.txt` | the same as global variables with formulas, to which SolidWorks links a model; "
+        "set its angular equation units to radians |"
+    )
     yield "| `strength.csv` | safety factor of every joint under the loads of the jump |"
     yield "| `tolerances.csv` | dimension chains: every gap as drawn, at worst, and within three standard deviations |"
     yield (

@@ -108,11 +108,12 @@ const SYMBOLS = {
   picks: '<path d="M7 1L8.8 5.2L13.3 5.5L9.8 8.4L11 12.9L7 10.4L3 12.9L4.2 8.4L.7 5.5L5.2 5.2Z" fill="var(--ink)"/>',
   spread: '<path d="M7 1V13M1 7H13" stroke="var(--soft)" stroke-width="1.4"/>',
   robust: '<path d="M0 11L14 4" stroke="var(--ink)" stroke-width="1.6" stroke-dasharray="5 2.5"/>',
+  best: '<path d="M0 7H14" stroke="var(--c0)" stroke-dasharray="3 2"/><path d="M3 7L10 3V11Z" fill="none" stroke="var(--c0)" stroke-width="1.5"/>',
 };
 
 function startSwitches() {
   const names = {
-    front: "front", cloud: "dominated", infeasible: "infeasible", published: "paper, as published",
+    front: "front", ...(hasBest() ? { best: "best torque found" } : {}), cloud: "dominated", infeasible: "infeasible", published: "paper, as published",
     simulated: "paper, simulated here", picks: "knee", floor: "floor: least rise of potential energy",
     ...(hasRobust() ? { spread: "spread under uncertainty, 5 to 95 %", robust: "robust front" } : {}),
   };
@@ -121,6 +122,7 @@ function startSwitches() {
     const symbol = draw("svg", { width: 14, height: 14, "aria-hidden": "true" });
     symbol.innerHTML = SYMBOLS[key]; // constant text from above
     const label = switchOf({ "data-show": key }, symbol, words, "layers", () => state.layers[key], (shown) => showLayer(key, shown));
+    if (key === "best") label.title = "Each mark is a jump that was found with the hardware of one of the designs and torques free over time (pareto-monoped limit); the line only joins them. Better ones may exist, none beyond the floor.";
     if (key === "floor") label.title = "No design that jumped in these studies can reach a height on less, whatever its controller: the least rise of potential energy from its start to any pose with the base there, with the foot above the ground and the joints between their stops, less what the foot's spring gives back. Losses and all motion at the apex come on top.";
     box.append(label);
   }

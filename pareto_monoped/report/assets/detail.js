@@ -159,7 +159,7 @@ function showAudit(chosen) {
   const box = byId("audit");
   box.replaceChildren();
   const audit = chosen?.audit;
-  if (chosen?.kind === "trial") box.append(make("p", { class: "small built" }, asBuilt(chosen)));
+  if (chosen?.kind === "trial") box.append(...[asBuilt(chosen), gapOf(chosen.index, chosen.row)].filter(Boolean).map((words) => make("p", { class: "small built" }, words)));
   if (!audit) {
     box.append(make("p", { class: "small" }, chosen?.kind === "trial" && chosen.at >= 0 ? "Not audited yet: the front is audited when the study ends." : chosen ? "Only designs on the front are audited." : "Nothing is selected."));
     return;

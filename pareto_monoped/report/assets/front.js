@@ -48,7 +48,8 @@ function foundRange(side) {
   const values = page.studies.flatMap((study, i) => {
     const rows = study.front.length ? study.front : study.trials.trial.map((_, row) => row);
     const more = page.objectives.includes(name) ? [] : mostOf(i, name);
-    return [...shownColumn(i, name, rows), ...more, ...study.cases.map((made) => ofCase(made, name))];
+    const best = bestJumps(i).map((jump) => inShown(name, jump[side === "x" ? 2 : 1]));
+    return [...shownColumn(i, name, rows), ...more, ...best, ...study.cases.map((made) => ofCase(made, name))];
   });
   if (papersAxes()) values.push(...page.published.map((made) => inShown(name, made[name])));
   if (name === "height_m" && kind === "linear") values.push(START_HEIGHT + 0.05, START_HEIGHT + 0.1);
@@ -150,7 +151,7 @@ function frontLayers(study) {
       text: (i) => `weighted search, ${plain(quantity[FIRST].label)} weight ${card.weighted[i][0]}<br>${hoverText(study, rows[i])}`,
     }));
   }
-  return [...robustLayers(study), ...list];
+  return [...robustLayers(study), ...bestLayers(study), ...list];
 }
 
 function pickLayers() {

@@ -1,4 +1,5 @@
-// What is known of designs under uncertainty: bars from the 5th to the 95th percentile, and the front of the bad ends.
+// What is known of designs under uncertainty: bars from the 5th to the 95th percentile, and the front of the bad ends;
+// and the front of the best torque found with the hardware of the designs.
 
 function hasRobust() { return page.studies.some((study) => study.robust); }
 
@@ -29,4 +30,30 @@ function robustLayers(study) {
     });
   }
   return list;
+}
+
+function hasBest() { return page.studies.some((study) => study.best); }
+
+// Jumps of the best torque found, each a row, height and energy; none on axes of something else.
+function bestJumps(study) {
+  const { best } = page.studies[study], { x, y, space } = state.axes;
+  return best && y === "height_m" && x === best.energy && !space ? best.front : [];
+}
+
+function bestLayers(study) {
+  const jumps = bestJumps(study), { x, y } = state.axes, tint = studyColour(study);
+  if (!state.layers.best || !jumps.length) return [];
+  const words = page.studies[study].best.held ? ", no part overloaded" : "";
+  return [{
+    name: "best", mode: "lines+markers", x: jumps.map(([, , energy]) => inShown(x, energy)), y: jumps.map(([, height]) => inShown(y, height)), stands: jumps.map(([row]) => [study, row]),
+    text: (i) => `<b>best torque found with this hardware${words}: ${shown(y, jumps[i][1])} on ${shown(x, jumps[i][2])}</b><br>${hoverText(study, jumps[i][0])}`,
+    marker: { size: 8, symbol: "triangle-left-open", color: tint }, line: { color: tint, width: 1.4, dash: "dash" },
+  }];
+}
+
+// What the best torque found saves of a design's energy at its height; empty where nobody has searched.
+function gapOf(index, row) {
+  const { best } = page.studies[index], at = best ? best.rows.indexOf(row) : -1;
+  if (at < 0 || best.gap[at] === null) return "";
+  return `Controller gap: the best torque found with this hardware takes ${best.gap[at].toFixed(1)} % less of ${quantity[best.energy].label} for this height${best.held ? ", with no part overloaded" : ""}.`;
 }

@@ -44,7 +44,7 @@ function freshState() {
     study, row, caseName: null,
     visible: new Set(page.studies.map((_, i) => i)), withoutMotors: new Set(), ranges: {}, best: "", shortlist: [], view: null,
     axes: { x: SECOND, y: FIRST, colour: "auto", size: "", logX: false, logY: false, space: false },
-    layers: { front: true, cloud: true, infeasible: false, published: true, simulated: true, picks: true, floor: true, spread: true, robust: true },
+    layers: { front: true, cloud: true, infeasible: false, published: true, simulated: true, picks: true, floor: true, spread: true, robust: true, best: true },
     table: { rows: "front", columns: null, sort: FIRST, down: false, find: "" },
   };
 }

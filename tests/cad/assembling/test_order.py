@@ -201,10 +201,9 @@ def test_every_part_of_a_robot_is_put_in_its_place_once(planned):
     ("case", "motor"),
     [
         ("C", "U12"),
-        ("nominal", "MAD_M6C12"),
         *(
             pytest.param(*pair, marks=pytest.mark.long)
-            for pair in (("C", "VT8020"), ("C", "MN8014"), ("nominal", "U8"))
+            for pair in (("nominal", "MAD_M6C12"), ("C", "VT8020"), ("C", "MN8014"), ("nominal", "U8"))
         ),
     ],
 )

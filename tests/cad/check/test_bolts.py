@@ -9,6 +9,7 @@ from pareto_monoped.geometry.shapes import Circle
 from tests.cad.check.faults import moved, shifted, with_instance
 
 
+@pytest.mark.long
 def test_a_screw_off_its_hole_is_measured(product, examine, failing):
     broken = moved(product, "thigh/knee_mount_screw_1", shifted(x=0.3))
     # It also cuts into the thread of its hole.

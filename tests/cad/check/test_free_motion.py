@@ -25,6 +25,7 @@ def with_range(monkeypatch, joint, **angles):
     monkeypatch.setattr(free_motion, f"{joint}_stop", lambda d: dataclasses.replace(true(d), **angles))
 
 
+@pytest.mark.long
 def test_a_range_that_leads_the_thigh_into_the_frame_is_found(examine, failing, monkeypatch):
     with_range(monkeypatch, "hip", upper_rad=3.14)
     assert failing() == ["the leg moves freely", "end stops meet at the ends of the ranges"]

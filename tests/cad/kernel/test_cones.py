@@ -8,7 +8,7 @@ import pytest
 
 from pareto_monoped.cad.kernel.process import solid_facts
 from pareto_monoped.cad.kernel.solids import solid_of
-from pareto_monoped.cad.kernel.step import part_step
+from pareto_monoped.cad.kernel.step import Substance, part_step
 from pareto_monoped.cad.shape.meshes import beveled, flaws, mesh_of
 from pareto_monoped.geometry.features import Cone, Hole, Mouth, ShaftEnd
 from pareto_monoped.geometry.parts import Part, Prism
@@ -81,7 +81,7 @@ def test_each_cone_takes_what_its_closed_form_says():
 @PARTS
 def test_solids_have_cones_as_read_back_from_step(part, tmp_path):
     path = tmp_path / "part.step"
-    path.write_bytes(part_step(solid_of(part), part.name, STEEL.colour))
+    path.write_bytes(part_step(solid_of(part), part.name, Substance.of(part)))
     read = bd.import_step(path)
     assert read.is_valid
     assert read.volume == pytest.approx(float(part.volume_mm3()), rel=1e-9)

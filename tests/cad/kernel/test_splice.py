@@ -8,11 +8,18 @@ import re
 import numpy as np
 import pytest
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
+from OCP.collections import Sequence_TDF_Label
+from OCP.STEPCAFControl import STEPCAFControl_Reader
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDocStd import TDocStd_Document
+from OCP.XCAFApp import XCAFApp_Application
+from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_MaterialTool
 
 from pareto_monoped.cad.assembly import shift, turn_z
 from pareto_monoped.cad.kernel.client import StepAssembly, StepPlacement
 from pareto_monoped.cad.kernel.solids import solid_of
-from pareto_monoped.cad.kernel.step import assembly_step, part_step, shapes_in, spliced, tree_step
+from pareto_monoped.cad.kernel.step import Substance, assembly_step, part_step, shapes_in, spliced, tree_step
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle, Pattern
@@ -20,7 +27,10 @@ from pareto_monoped.materials import Material
 
 STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.5, 0.5, 0.5))
 ALUMINIUM = Material(name="aluminium", density_kg_per_m3=2700.0, colour=(0.75, 0.8, 0.85))
-_STYLE = re.compile(rb"#\d+=(MECHANICAL_DESIGN|STYLED|PRESENTATION_STYLE|SURFACE_S|FILL_AREA|COLOUR_RGB)")
+_STYLE = re.compile(
+    rb"#\d+=(MECHANICAL_DESIGN|STYLED|PRESENTATION_STYLE|SURFACE_S|FILL_AREA|COLOUR_RGB|PROPERTY_D|REPRESENTATION|"
+    rb"DESCRIPTIVE_R|MEASURE_R|DERIVED_UNIT|\(MASS_UNIT|\(LENGTH_UNIT\(\)NAMED_UNIT\(\*\)SI_UNIT\(.CENTI)"
+)
 
 
 def disc(name, material, *holes, radius_mm=10.0):
@@ -52,11 +62,11 @@ def solids(assembly):
 
 @pytest.fixture(scope="module")
 def parts(assembly):
-    return {name: part_step(solid_of(part), name, part.material.colour) for name, part in assembly.parts.items()}
+    return {name: part_step(solid_of(part), name, Substance.of(part)) for name, part in assembly.parts.items()}
 
 
 def entities(text):
-    """The entities of a file without white space and colours, and with one uncertainty for all of an assembly."""
+    """The entities of a file without white space, colours and materials, one uncertainty for all of an assembly."""
     lines = re.sub(rb"\s+", b"", text.partition(b"DATA;")[2]).split(b";")
     lines = [re.sub(rb"(LENGTH_MEASURE\()[^)]*", rb"\1", line) for line in lines]
     return [line for line in lines if not _STYLE.match(line)]
@@ -87,6 +97,34 @@ def test_colours_are_those_of_the_parts(assembly, parts, solids):
         found[shape.name] = tuple(float(v) for v in colours[b"%d" % (style + 7)].split(b","))
     # What has several bodies is no solid, and has no colour.
     assert found == {name: part.material.colour for name, part in assembly.parts.items() if name != "pads"}
+
+
+def test_materials_and_densities_are_read_by_the_kernel_as_those_of_the_parts(assembly, parts, solids, tmp_path):
+    """In a file of schema AP242; what has several bodies is no solid, and has no material."""
+    text = written(assembly, parts, solids)
+    assert b"FILE_SCHEMA(('AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF" in re.sub(rb"\s", b"", text)
+    assert b"AP242" in parts["plate"]
+    (tmp_path / "all.step").write_bytes(text)
+    document = TDocStd_Document(TCollection_ExtendedString("MDTV-XCAF"))
+    XCAFApp_Application.GetApplication_s().InitDocument(document)
+    reader = STEPCAFControl_Reader()
+    reader.SetMatMode(True)
+    reader.ReadFile(str(tmp_path / "all.step"))
+    assert reader.Transfer(document)
+    labels, found = Sequence_TDF_Label(), {}
+    XCAFDoc_DocumentTool.ShapeTool_s(document.Main()).GetShapes(labels)
+    for label in (labels.Value(k) for k in range(1, labels.Length() + 1)):
+        name = TDataStd_Name()
+        label.FindAttribute(TDataStd_Name.GetID_s(), name)
+        found[name.Get().ToExtString()] = XCAFDoc_MaterialTool.GetDensityForShape_s(label)
+    made = {name: part.material for name, part in assembly.parts.items() if name != "pads"}
+    expected = {name: material.density_kg_per_m3 * 1e-6 for name, material in made.items()}
+    assert {name: found[name] for name in expected} == pytest.approx(expected)  # grams per cubic millimetre
+    # Grams per cubic centimetre; the kernel reads and ignores this.
+    powers = re.findall(rb"DERIVED_UNIT_ELEMENT\(#\d+,(-?\d)\.\)", text)
+    assert powers == [b"1", b"-3"] * len(made)
+    names = re.findall(rb"DESCRIPTIVE_REPRESENTATION_ITEM\('([^']*)','([^']*)'\)", text)
+    assert sorted(names) == sorted((material.name.encode(), b"") for material in made.values())
 
 
 def test_a_file_of_another_part_is_refused(assembly, parts, solids):

@@ -6,7 +6,7 @@ import pytest
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.kernel.process import solid_facts
-from pareto_monoped.cad.shape.stacks import stands_on, without_teeth
+from pareto_monoped.cad.shape.outlines import stands_on, without_teeth
 from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.parts import Part, Prism

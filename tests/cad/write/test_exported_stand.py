@@ -99,7 +99,10 @@ def machine(document, jump):
     return bare._replace(stop=stops, foot=spring(foot, "solref", "solimp", bare.inverse[2]))
 
 
-@pytest.mark.parametrize("number", range(len(DESIGNS)))
+@pytest.mark.parametrize(
+    "number",
+    [*range(6), *(pytest.param(number, marks=pytest.mark.long) for number in range(6, len(DESIGNS) - 2)), 13, 14],
+)
 @pytest.mark.parametrize("drive", STANDS)
 def test_an_independent_simulator_makes_the_jump_of_the_files(drive, number):
     """Measured at worst in percent: rigid 0.02 of height, 0.06 of energies; elastic 0.06, 0.08, and 1.8 of loads."""

@@ -27,8 +27,13 @@ from pareto_monoped.cad.write.meshes import glb, stl, threemf
 from pareto_monoped.geometry.features import Cone
 
 
-def test_assembly_step_gives_back_solids_names_colours_and_volumes(exported):
-    shape = bd.import_step(exported.folder / "assembly.step")
+@pytest.fixture(scope="module")
+def shape(exported):
+    """The assembly's STEP file, read."""
+    return bd.import_step(exported.folder / "assembly.step")
+
+
+def test_assembly_step_gives_back_solids_names_colours_and_volumes(exported, shape):
     assert [unit.label for unit in shape.children] == [
         "base_frame", "hip_actuator", "thigh", "knee_actuator", "journal", "shank", "foot",
     ]  # fmt: skip
@@ -177,8 +182,7 @@ def test_design_record_and_readme_tell_the_same(exported, actuator_map):
     assert f"teeth {gears.sun_teeth}/{gears.planet_teeth}/{gears.ring_teeth}" in text
 
 
-def test_parts_list_sizes_and_units_are_those_of_the_files(exported):
-    shape = bd.import_step(exported.folder / "assembly.step")
+def test_parts_list_sizes_and_units_are_those_of_the_files(exported, shape):
     with (exported.folder / "bom.csv").open() as stream:
         rows = list(csv.DictReader(stream))
     for row in rows:

@@ -4,6 +4,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from pareto_monoped.definition.study import load_study
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import resume, run
@@ -13,6 +15,7 @@ ROOT = Path(__file__).parents[3]
 TOML = 'name = "s"\nevaluations = {n}\naudit = false\nstrength = false\n[algorithm]\nname = "nsga2"\npopulation = 20\n'
 
 
+@pytest.mark.long
 def test_killed_in_mid_run_and_resumed(cluster, tmp_path, place, address):
     """Killed by SIGKILL after acknowledged generations, and resumed at once, a study ends where it would have."""
     (tmp_path / "s.toml").write_text(TOML.format(n=200))
