@@ -1,7 +1,9 @@
 """Real small studies, made once a session, and a headless browser without a network."""
 
 import base64
+import math
 import struct
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -116,6 +118,9 @@ def grown(data: StudyData, count: int) -> StudyData:
     return replace(data, trials=trials, audits=data.audits.iloc[:0])
 
 
+DOUBLE_CLICK_S = 0.45  # two clicks within 0.4 s on one spot of a chart show the whole of it
+
+
 class Tab:
     """A tab in a browser without a network, with everything that its page complained about or asked for."""
 
@@ -125,6 +130,7 @@ class Tab:
         self.page = self.context.new_page()
         self.complaints: list[str] = []
         self.requests: list[str] = []
+        self.clicked_s = -math.inf
         self.page.on("console", lambda m: self.complaints.append(m.text) if m.type == "error" else None)
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("dialog", lambda dialog: self.complaints.append(f"dialog {dialog.message}") or dialog.dismiss())
@@ -201,9 +207,11 @@ class Tab:
         )
 
     def click_point(self, trace: str, index: int) -> None:
-        """Click a point of the front chart."""
+        """Click a point of the front chart, long enough after the last one not to make a double click."""
         self.to_front()
+        self.page.wait_for_timeout(max(0.0, 1e3 * (self.clicked_s + DOUBLE_CLICK_S - time.monotonic())))
         self.page.mouse.click(*self.point(trace, index))
+        self.clicked_s = time.monotonic()
 
     def scroll_through(self) -> None:
         """Let every chart come into view."""
