@@ -1,8 +1,9 @@
 """Make the figures of README and docs again, once a change of the machine has moved them.
 
 A table that stands below a comment ``<!-- made by: COMMAND -->`` gets the rows of the table with the same titles that
-the command prints. In a block that starts with ```console, each line below ``$ command`` gets the numbers that the
-command prints now. Words are never changed: a line whose words are printed no more is named, and is yours to mend.
+the command prints; a table of times alone stands below ``<!-- timed by: COMMAND -->`` and stays. In a block that starts
+with ```console, each line below ``$ command`` gets the numbers that the command prints now. Words are never changed: a
+line whose words are printed no more is named, and is yours to mend.
 
     python tools/documented.py [--tables | --outputs] [--check] [PAGE ...]
 
@@ -28,6 +29,7 @@ ROOT = Path(__file__).parents[1]
 TABLE = re.compile(r"(<!-- made by: (.+?) -->\n)((?:\|.*\n)+)")
 CONSOLE = re.compile(r"(?<=^```console\n).*?(?=^```)", re.S | re.M)
 MADE_BY = {"make pareto": "pareto-monoped pareto"}  #: Targets of make that print figures, and what they run.
+TIMED = {"speed"}  #: Columns of times in tables that are made again; a check passes over them.
 CLOCK = re.compile(r"\b\d+(?:\.\d+)? s\b")  #: How long something took, which is as true as any other time.
 #: The machine's best vector instructions change last digits; these are those of every x86-64 since 2013.
 PLAIN = {
@@ -56,8 +58,8 @@ def printed(command: str, folder: Path) -> str:
     return done.stdout
 
 
-def with_tables(page: str) -> tuple[str, list[str]]:
-    """The page with the rows of today in its marked tables, and what could not be made again."""
+def with_tables(page: str, *, timed: bool = True) -> tuple[str, list[str]]:
+    """The page with the rows of today in its marked tables, and what could not be made again; times only if asked."""
     faults: list[str] = []
 
     def again(found: re.Match[str]) -> str:
@@ -65,8 +67,10 @@ def with_tables(page: str) -> tuple[str, list[str]]:
         titles = _cells(table.splitlines()[0])
         for other in re.findall(r"(?:^\|.*\n)+", printed(command, ROOT), re.M):
             if _cells(other.splitlines()[0]) == titles:
-                kept = table.splitlines()[:2]
-                return str(comment) + "\n".join([*kept, *other.splitlines()[2:]]) + "\n"
+                old, rows = table.splitlines()[2:], other.splitlines()[2:]
+                if not timed and TIMED & set(titles) and len(old) == len(rows):
+                    rows = [_as_timed(titles, *pair) for pair in zip(old, rows, strict=True)]
+                return str(comment) + "\n".join([*table.splitlines()[:2], *rows]) + "\n"
         faults.append(f"'{command}' prints no table with the titles {' | '.join(titles)}")
         return str(found.group())
 
@@ -156,6 +160,12 @@ def _cells(row: str) -> list[str]:
     return [cell.strip() for cell in row.strip().strip("|").split("|")]
 
 
+def _as_timed(titles: list[str], old: str, new: str) -> str:
+    """The new row with the times of the old one."""
+    cells = [was if title in TIMED else now for title, was, now in zip(titles, _cells(old), _cells(new), strict=True)]
+    return f"| {' | '.join(cells)} |"
+
+
 def _timeless(line: str) -> list[str]:
     return CLOCK.sub("#", line).split()
 
@@ -187,7 +197,7 @@ def main() -> None:
             (folder / "reports").mkdir()
             text = page.read_text(encoding="utf-8")
             if not asked.outputs:
-                text, missed = with_tables(text)
+                text, missed = with_tables(text, timed=not asked.check)
                 faults += [f"{page.name}: {fault}" for fault in missed]
             if not asked.tables:
                 text, missed = with_outputs(text, folder)

@@ -25,6 +25,13 @@ def test_a_table_that_the_command_does_not_print_is_named_and_kept(script):
     assert "x | y" in fault
 
 
+def test_a_check_passes_over_columns_of_times_alone(script):
+    command = "printf '| step | speed | off |\\n|---|---|---|\\n| 1 | 1.93 | 0.5 |\\n'"
+    page = f"<!-- made by: {command} -->\n| step | speed | off |\n|---|---|---|\n| 1 | 2.00 | 0.4 |\n"
+    assert script.with_tables(page, timed=False)[0] == page.replace("0.4", "0.5")
+    assert script.with_tables(page)[0] == page.replace("2.00", "1.93").replace("0.4", "0.5")
+
+
 def test_outputs_get_the_numbers_of_today_and_keep_blanks_and_gaps(script, tmp_path):
     command = "printf 'mass 5.1 kg\\nother\\n\\nheight   1.25 m\\nend 7\\n'"
     page = f"```console\n$ {command}\nmass 4 kg\n...\n\nheight 1 m\n...\n```\n"
