@@ -84,7 +84,8 @@ def test_a_design_that_holds_passes_the_check_and_says_so(gentle):
     assert "not asked for" not in page
     assert all(f"| {joint.name} |" in page for joint in TABLE)
     assert page.count(" | informs |") == 2
-    assert f"for {gentle.gear_life.text} jumps; the duty is 100000." in page
+    assert f"safety of their duty for {gentle.gear_life.text} jumps." in page
+    assert "every one of 100000 jumps" in page
     assert gentle.record["jumps"]["as_built"]["gear_strike_safety"] >= 1.0
     assert gentle.gear_life.jumps >= 1e5
     assert not gentle.gear_life.advice
@@ -157,7 +158,7 @@ def test_gears_that_are_struck_too_hard_in_every_jump_are_told_of_and_not_refuse
     assert made.gear_life.jumps < 1e5
     page = (made.folder / "README.md").read_text()
     assert made.gear_life.advice[1:] in page
-    assert "This informs, and nothing is refused for it." in page
+    assert "It informs, and nothing is refused for it." in page
     (row,) = [row for row in rows_of(made.folder) if row["joint"] == "knee_gear_strikes"]
     assert float(row["factor"]) == pytest.approx(made.record["jumps"]["as_built"]["gear_strike_safety"], rel=1e-9)
 

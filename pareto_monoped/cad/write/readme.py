@@ -141,14 +141,16 @@ def _strength(record: Mapping[str, Any], factors: Sequence[JointFactor], life: G
         yield f"| {one.joint.name} | {one.factor:.2f} | {required} |"
     yield ""
     if life is not None:
+        flank, root = life.asked
         yield (
-            f"Gears that are struck in every jump as in this one have the safety of their duty for {life.text} jumps; "
-            f"the duty is {life.duty_jumps:.0f}. Struck in all of these, they have a safety of {life.safeties}. This "
-            "informs, and nothing is refused for it. The rows `gear_flank` and `gear_root` above say something else: "
-            "how much larger a torque may be that comes once, against static strength. `gear_strikes` is the torque "
-            "that the gears carry in every jump of their duty, with its safety, over that of this one."
+            "`gear_flank` and `gear_root` are how much larger a torque may be that comes once, against static "
+            f"strength. `gear_strikes` compares with the torque that the gears carry in every one of "
+            f"{life.duty_jumps:.0f} jumps with the safety of their duty, {flank:g} against pits and {root:g} against "
+            "broken teeth; fatigue also counts finish and lubricant (Z_L Z_v Z_R), static strength does not. It "
+            "informs, and nothing is refused for it."
         )
-        yield from (f"{life.advice[0].upper()}{life.advice[1:]}.", "") if life.advice else ("",)
+        kept = f"Struck in every jump as in this one, the gears have the safety of their duty for {life.text} jumps."
+        yield from (f"{life.advice[0].upper()}{life.advice[1:]}." if life.advice else kept, "")
 
 
 def _checks(checks: Sequence[Check]) -> Iterator[str]:
