@@ -336,7 +336,7 @@ def _backlash(sums: _Sums, actuator: Actuator) -> tuple[Chain, ...]:
                 eccentric("sun", outer, sun),
                 eccentric("planet", outer, planet),
             ),
-            cure="raise gears.backlash_modules",
+            cure="raise gears.backlash_least_mm",
         ),
         Chain(
             name="backlash of planet and ring",
@@ -348,6 +348,6 @@ def _backlash(sums: _Sums, actuator: Actuator) -> tuple[Chain, ...]:
                 eccentric("planet", -inner, planet),
                 eccentric("ring", inner, ring),
             ),
-            cure="raise gears.backlash_modules",
+            cure="raise gears.backlash_least_mm",
         ),
     )
