@@ -81,25 +81,25 @@ def campaign(
     else:
         print_table(standings)
         echo(f"{grid.path}: {studies(len(standings))}, {counted(standings)}", err=True)
-    _tell(standings, place, places)
     if complete and not (page is None and table is None):
         _write(grid, standings, page, table, force)
+    _tell(standings, place, places)
     if not complete:
         return 130
     return 1 if any(one.state == "failed" for one in standings) else 0
 
 
 def _tell(standings: "Sequence[Standing]", folder: Path, places: "Sequence[Place]") -> None:
-    """One line for each study that failed, and one for databases that are of no study of the campaign."""
+    """One line for databases that are of no study of the campaign, and one for each study that failed, as the last."""
     from pareto_monoped.campaign.folder import strangers
 
-    for one in standings:
-        if one.state == "failed":
-            echo(f"error: {name(one.name)}: {name(one.reason)}", err=True)
     if others := strangers(folder, places):
         some = ", ".join(name(db.name) for db in others[:3]) + (", ..." if len(others) > 3 else "")
         those = "a database" if len(others) == 1 else f"{len(others)} databases"
         note(f"no study of this grid has {those} in {folder}: {some}")
+    for one in standings:
+        if one.state == "failed":
+            echo(f"error: {name(one.name)}: {name(one.reason)}", err=True)
 
 
 def _write(

@@ -49,14 +49,17 @@ def test_a_failing_study_is_told_in_one_line_and_by_the_exit_code(done):
     ]
     assert any(line.startswith("VT8020_seed1: 20 jumps, hypervolume") for line in lines)
     assert "grid.toml: 4 studies, 2 finished, 2 failed" in lines
+    assert lines[-1].startswith("error: ")  # after the files that it wrote
 
 
 def test_a_motor_file_is_named_in_quotes_also_where_a_key_of_it_is_wrong(tmp_path, capsys):
     (tmp_path / "bad.toml").write_text('name = "bad"\n')
+    (tmp_path / "other.db").touch()
     written(tmp_path, 'motors = ["bad.toml"]', SMALL)
-    assert run(["campaign", str(tmp_path / "grid.toml")]) == 1
-    (line,) = [line for line in capsys.readouterr().err.splitlines() if line.startswith("error: ")]
+    assert run(["campaign", str(tmp_path / "grid.toml"), "--folder", str(tmp_path)]) == 1
+    *before, line = capsys.readouterr().err.splitlines()
     assert line.startswith(f"error: grid: motor file '{tmp_path}/bad.toml': ")
+    assert any(other.startswith("note: no study of this grid has a database") for other in before)
 
 
 def test_the_table_is_on_stdout_and_fits_into_80_columns(done):
