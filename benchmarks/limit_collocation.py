@@ -9,6 +9,7 @@ a hard floor, with two degrees of freedom; in flight there are four and no torqu
 
 import argparse
 from dataclasses import replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -67,12 +68,12 @@ class Leg:
         self.centre = ca.Function("centre", [q], [centre])
         self.foot_of = ca.Function("foot", [q], [self.foot])
 
-    def _bumper(self, q: ca.SX, v: ca.SX) -> ca.SX:
-        torques = []
+    def _bumper(self, q: ca.SX, v: ca.SX) -> Any:
+        torques: list[Any] = []
         for j in range(2):
             lower, upper = self.record["lower_stop_rad"][j], self.record["upper_stop_rad"][j]
             per, scale, chi = (self.record[name][j] for name in ("bumper_per_rad", "bumper_n_m", "bumper_s_per_rad"))
-            torque = 0
+            torque: Any = 0
             for side, beyond in ((1.0, lower - q[j]), (-1.0, q[j] - upper)):
                 share = per * (beyond + ca.sqrt(beyond**2 + 1e-8)) / 2
                 slow = scale * (1.25 * share**1.5 + 50.0 * share**6)
@@ -177,7 +178,7 @@ def least_energy(design: Design, calibration: Calibration, height_m: float) -> f
         opti.subject_to(opti.bounded(lower[j] - travel, q2[2 + j, :], upper[j] + travel))
     clear = [leg.foot_of(q2[:, k])[1] for k in range(1, 2 * m + 1)]
     opti.subject_to(ca.vertcat(*clear) >= float(leg.foot_of(leg.start)[1]))
-    energy = 0
+    energy: Any = 0
     for k in range(0, 2 * n, 2):
         energy += 100.0 * t1 / n / 6 * ca.sum1(work[:, k] + 4 * work[:, k + 1] + work[:, k + 2])
     opti.minimize(energy + 1e-5 * ca.sumsqr(u1[:, 1:] - u1[:, :-1]))
