@@ -129,7 +129,10 @@ def _change_table(connection: sqlite3.Connection, table: str, dice: random.Rando
 
 def _change_setting(connection: sqlite3.Connection, dice: random.Random) -> None:
     """Change a value somewhere within a row of JSON."""
-    key, text = dice.choice(connection.execute("SELECT key, value FROM monoped_meta").fetchall())
+    rows = connection.execute("SELECT key, value FROM monoped_meta").fetchall()
+    if not rows:  # an earlier harm has deleted all
+        return
+    key, text = dice.choice(rows)
     try:
         value = json.loads(text)
     except ValueError:  # an earlier harm has made it no JSON, or a number of too many digits
