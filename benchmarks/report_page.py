@@ -124,7 +124,7 @@ def longest_ms(trace: Any) -> float:
     """Processor time of the longest task of any main thread of a page in a trace."""
     events = trace["traceEvents"]
     main = {(e["pid"], e["tid"]) for e in events if e.get("args", {}).get("name") == "CrRendererMain"}
-    return max(e.get("tdur", 0) for e in events if e["ph"] == "X" and (e["pid"], e["tid"]) in main) / 1000.0
+    return max(float(e.get("tdur", 0)) for e in events if e["ph"] == "X" and (e["pid"], e["tid"]) in main) / 1000.0
 
 
 def _busy_ms(session: Any) -> float:

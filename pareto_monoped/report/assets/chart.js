@@ -17,7 +17,8 @@ const FONT = { family: "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, 
 
 // The line, areas, bars and few marks of a layer as traces.
 function tracesOf(layer) {
-  const { line, marker, mode, name, x, y } = layer;
+  const { line, marker, mode, name } = layer, kept = mode.includes("lines") && layer.x.length > CROWD ? thinned(layer) : null;
+  const [x, y] = kept ? [layer.x, layer.y].map((list) => kept.map((i) => list[i])) : [layer.x, layer.y];
   const common = { x, y, name, type: "scatter", hoverinfo: "skip", showlegend: false, cliponaxis: false };
   if (mode === "area") return [{ ...common, y, mode: "lines", line: { width: 0, color: layer.fill } }, { ...common, y: layer.y2, mode: "lines", line: { width: 0, color: layer.fill }, fill: "tonexty", fillcolor: faded(layer.fill, 0.2) }];
   if (mode === "bars") {
@@ -50,9 +51,20 @@ function framed(node) {
   box.append(node);
 }
 
+// The points of a line that move it by half a pixel, and its ends.
+function thinned({ px, py }) {
+  let last = 0;
+  return [...px.keys()].filter((i) => {
+    const near = i > 0 && i < px.length - 1 && Math.abs(px[i] - px[last]) + Math.abs(py[i] - py[last]) < 1 / 2;
+    if (!near) last = i;
+    return !near;
+  });
+}
+
 function each(list, change) { return Array.isArray(list) ? list.map(change) : change(list); }
 
-function faded(tint, alpha) { return `rgba(${rgbOf(tint).join(",")},${alpha})`; }
+// A colour of the style sheet with some opacity.
+function faded(tint, alpha) { return tint + Math.round(255 * alpha).toString(16).padStart(2, "0"); }
 
 function axisLook(title, kind, range) {
   return {
@@ -149,8 +161,7 @@ class Chart {
     const painted = (layers) => {
       if (!layers.length) return [];
       const canvas = make("canvas", { width: Math.round(width * scale), height: Math.round(height * scale) }), context = softly(canvas);
-      context.scale(scale, scale);
-      context.translate(-left, -top);
+      context.translate(-left * scale, -top * scale);
       for (const layer of layers) paintMarks(context, layer, scale);
       return [canvas.toDataURL()];
     };
@@ -166,9 +177,8 @@ class Chart {
   }
 
   place(layer) {
-    const own = (list, to) => Float32Array.from(list, to);
-    layer.px = own(layer.x, (v) => this.px(v));
-    layer.py = own(layer.y, (v) => this.py(v));
+    layer.px = new Float32Array(layer.x.map((v) => this.px(v)));
+    layer.py = new Float32Array(layer.y.map((v) => this.py(v)));
   }
 
   // Names beside marks, each where it covers neither a name nor a mark, else at the end of a short line.

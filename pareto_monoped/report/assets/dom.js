@@ -14,6 +14,7 @@ const [FIRST, SECOND] = page.objectives;
 const PAPERS_OWN = FIRST === "height_m" && SECOND === "energy_j";
 
 function bytesOf(base64) {
+  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(base64); // of newer browsers
   const letters = atob(base64), bytes = new Uint8Array(letters.length);
   for (let k = 0; k < bytes.length; k += 1) bytes[k] = letters.charCodeAt(k);
   return bytes;

@@ -29,17 +29,14 @@ const pictures = new Map();
 function picture(symbol, size, tint, scale) {
   const key = `${symbol} ${size} ${tint} ${scale}`;
   if (pictures.has(key)) return pictures.get(key);
-  const canvas = document.createElement("canvas");
-  const reach = Math.ceil(0.62 * size + 2);
-  canvas.width = canvas.height = 2 * reach * scale;
+  const reach = Math.ceil((0.62 * size + 2) * scale), canvas = new OffscreenCanvas(2 * reach, 2 * reach);
   const context = softly(canvas);
-  context.scale(scale, scale);
   context.translate(reach, reach);
-  context.scale(size / 10, size / 10);
+  context.scale(scale * size / 10, scale * size / 10);
   const [d, open] = outline(symbol);
   Object.assign(context, { fillStyle: tint, strokeStyle: tint, lineWidth: 18 / size, lineJoin: "round" });
   context[open ? "stroke" : "fill"](new Path2D(d));
-  const made = { canvas, reach };
+  const made = { image: canvas.transferToImageBitmap(), reach }; // a bitmap is placed faster than a canvas
   if (pictures.size > 2000) pictures.clear();
   pictures.set(key, made);
   return made;
@@ -60,14 +57,14 @@ function softly(canvas) { return canvas.getContext("2d", { willReadFrequently: t
 const FAINT = 0.3; // marks below it are faint together, however many lie over each other
 
 function paintMarks(context, layer, scale) {
-  const { marker, px, py } = layer, faint = new Map(), drawn = new Map(), here = context.getTransform();
+  const { marker, px, py, cloud } = layer, grid = cloud ? scale / 2 : scale, snapped = cloud ? Math.round : (at) => at, faint = new Map(), drawn = new Map(), here = context.getTransform();
   const place = (to, i) => {
     if (Number.isNaN(px[i]) || Number.isNaN(py[i])) return;
-    const made = picture(entry(marker.symbol, i) ?? "circle", entry(marker.size, i), tintOf(marker, i), scale), { canvas, reach } = made;
-    // One mark exactly over another is drawn once.
+    const made = picture(entry(marker.symbol, i) ?? "circle", entry(marker.size, i), tintOf(marker, i), scale), { image, reach } = made;
+    // One mark over another, on the same pixel, is drawn once; of the dots of a cloud one on every two by two pixels.
     if (!drawn.has(made)) drawn.set(made, new Set());
-    const at = Math.round(2 * px[i]) * 65536 + Math.round(2 * py[i]), known = drawn.get(made), size = known.size;
-    if (known.add(at).size > size) to.drawImage(canvas, px[i] - reach, py[i] - reach, 2 * reach, 2 * reach);
+    const at = Math.round(grid * px[i]) * 65536 + Math.round(grid * py[i]), known = drawn.get(made), size = known.size;
+    if (known.add(at).size > size) to.drawImage(image, snapped(scale * px[i]) - reach, snapped(scale * py[i]) - reach);
   };
   for (let i = 0; i < px.length; i += 1) {
     const opacity = entry(marker.opacity ?? 1, i);

@@ -6,7 +6,7 @@ const DASHES = { solid: [], dash: [7, 4], dot: [1.5, 3.5], dashdot: [7, 3, 1.5, 
 // Returns what asks for a redraw.
 function lazily(id, render) {
   const node = byId(id);
-  let near = false, stale = true, width = node.clientWidth;
+  let near = false, stale = true, width = null;
   const now = () => { stale = false; render(node); };
   const again = () => { stale = true; if (near || paperScale()) now(); };
   charts.push(again);
@@ -15,9 +15,9 @@ function lazily(id, render) {
     if (near && stale) now();
   }, { rootMargin: "300px" }).observe(node);
   new ResizeObserver(() => {
-    if (node.clientWidth === width) return;
+    const before = width;
     width = node.clientWidth;
-    again();
+    if (before !== null && width !== before) again();
   }).observe(node);
   window.addEventListener("beforeprint", () => { if (stale) now(); });
   return again;

@@ -33,16 +33,11 @@ function showModel(box, model, name) {
   }
   const corners = new Int16Array(bytesOf(model.positions).buffer);
   const tints = bytesOf(model.colours);
-  const [low, high] = [[1e9, 1e9, 1e9], [-1e9, -1e9, -1e9]];
-  for (let i = 0; i < corners.length; i += 1) {
-    low[i % 3] = Math.min(low[i % 3], corners[i]);
-    high[i % 3] = Math.max(high[i % 3], corners[i]);
-  }
-  const middle = low.map((v, k) => (v + high[k]) / 2);
-  const size = Math.hypot(...low.map((v, k) => high[k] - v)) / 2 || 1;
+  const ends = [0, 1, 2].map((k) => extent(corners.filter((_, i) => i % 3 === k)));
+  const middle = ends.map(([low, high]) => (low + high) / 2);
+  const size = Math.hypot(...ends.map(([low, high]) => high - low)) / 2 || 1;
   const positions = Float32Array.from(corners, (v, i) => (v - middle[i % 3]) / size);
-  const colours = new Float32Array(corners.length);
-  for (let i = 0; i < corners.length; i += 1) colours[i] = tints[3 * Math.floor(i / 9) + i % 3] / 255;
+  const colours = Float32Array.from(corners, (_, i) => tints[3 * Math.floor(i / 9) + i % 3] / 255);
   gl.useProgram(made);
   for (const [attribute, values] of [["position", positions], ["tint", colours]]) {
     gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
