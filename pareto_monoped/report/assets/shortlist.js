@@ -5,11 +5,11 @@ function nameOf(study, row) {
   return `trial ${trials.trial[row]}${page.studies.length > 1 ? `, ${label}` : ""}`;
 }
 
-function keepButton(study, row) {
+function keepButton(study, row, [out, none, hold] = ["Remove from shortlist", "Shortlist is full", "Keep for comparison"]) {
   const kept = shortlisted(study, row) >= 0;
   const full = !kept && state.shortlist.length >= SHORTLIST_MOST;
   // What is heard begins with what is seen.
-  const words = kept ? "Remove from shortlist" : full ? "Shortlist is full" : "Keep for comparison";
+  const words = kept ? out : full ? none : hold;
   const act = () => (kept ? drop : keep)(study, row);
   return buttonOf(words, act, { class: "hold", "data-kept": `hold ${study} ${row}`, "aria-pressed": kept, disabled: full ? "" : null, "aria-label": `${words}: ${nameOf(study, row)}` });
 }
@@ -36,7 +36,7 @@ function alternatives() {
   const rows = pick.alternatives.map((one) => {
     const show = buttonOf(`trial ${trials.trial[one.row]}`, () => select(state.study, one.row), { "aria-label": `Show ${nameOf(state.study, one.row)}` });
     const price = `${one.price > 0 ? "+" : ""}${round(100 * one.price, 1)} %`;
-    return make("tr", {}, make("th", { scope: "row" }, show), make("td", { class: "n" }, price), make("td", {}, one.text + (one.audited ? "" : " (not audited)")), make("td", {}, keepButton(state.study, one.row)));
+    return make("tr", {}, make("th", { scope: "row" }, show), make("td", { class: "n" }, price), make("td", {}, one.text + (one.audited ? "" : " (not audited)")), make("td", {}, keepButton(state.study, one.row, ["Kept", "Full", "Keep"])));
   });
   const head = make("thead", {}, make("tr", {}, ...["design", "price", "how it differs", "shortlist"].map((words, i) => make("th", { scope: "col", class: i === 1 ? "n" : null }, words))));
   const table = make("table", { class: "alternatives" }, head, make("tbody", {}, ...rows));
