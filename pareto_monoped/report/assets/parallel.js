@@ -132,8 +132,8 @@ function drawHeads() {
 }
 
 function headOf(name, i) {
-  const { label, unit } = quantity[name], { kind } = axisScale(name);
-  const head = make("button", { type: "button", "data-head": name, title: "Drag it, or move it with the arrow keys", "aria-label": `${label} ${unit}, axis ${i + 1} of ${par.names.length}: the arrow keys move it` }, make("b", {}, label), kind === "linear" ? unit : `${unit}, log`);
+  const { label, unit } = quantity[name], words = axisScale(name).kind === "linear" ? unit : `${unit}, log`;
+  const head = make("button", { type: "button", "data-head": name, title: "Drag it, or move it with the arrow keys", "aria-label": `${label} ${words}, axis ${i + 1} of ${par.names.length}: the arrow keys move it` }, make("b", {}, label), ` ${words}`);
   const movedTo = (to) => par.names.filter((one) => one !== name).toSpliced(Math.max(to, 0), 0, name);
   head.addEventListener("keydown", (event) => {
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
