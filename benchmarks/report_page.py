@@ -1,8 +1,9 @@
 """How quick the report's page is in headless Chromium: first view, arrow keys, switches, longest task, size.
 
 Pages are made of studies given by name, and of one of them grown to more trials. Each figure is the median of several
-tries, measured in the page by PerformanceObserver and by the clock of the browser; processor time of the page's
-process by the DevTools protocol stands beside it, because other work on the machine stretches only the wall clock.
+tries, measured in the page by the clock of the browser; processor time of the page's main thread by the DevTools
+protocol stands beside it, because other work on the machine stretches only the wall clock. The longest task is that of
+a trace, in processor time, too.
 Before anything is timed, the page must show what the study has: the number of designs drawn and the design that an
 arrow key selects are compared with the data.
 
@@ -14,6 +15,7 @@ import json
 import shutil
 import statistics
 import tempfile
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -30,11 +32,6 @@ from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.study.run import run
 
 TRIES = 5
-WATCH = """
-window.tasks = [];
-new PerformanceObserver((list) => { for (const e of list.getEntries()) window.tasks.push([e.startTime, e.duration]); })
-    .observe({ type: "longtask", buffered: true });
-"""
 FIRST_VIEW = """() => new Promise((done) => {
     const look = () => {
         const chart = document.getElementById("front-chart");
@@ -51,9 +48,16 @@ KEY = """async (key) => {
     await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
     return performance.now() - start;
 }"""
-TOGGLE = """async (selector) => {
+CLICK = """async (selector) => {
     const start = performance.now();
     document.querySelector(selector).click();
+    await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+    return performance.now() - start;
+}"""
+TYPE = """async ([selector, value]) => {
+    const start = performance.now(), field = document.querySelector(selector);
+    field.value = value;
+    field.dispatchEvent(new Event("input", { bubbles: true }));
     await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
     return performance.now() - start;
 }"""
@@ -72,30 +76,55 @@ def grown(data: StudyData, count: int) -> StudyData:
     return replace(data, trials=trials)
 
 
-def measured(browser: Any, file: Path, data: StudyData) -> dict[str, float]:
-    """One opening of the page: milliseconds of each step."""
+def measured(browser: Any, file: Path, data: StudyData, *, traced: bool = False) -> dict[str, float]:
+    """One opening of the page: milliseconds of each step; or of its longest task, for which a trace slows all."""
     context = browser.new_context(viewport={"width": 1440, "height": 900}, reduced_motion="reduce")
     tab = context.new_page()
-    tab.add_init_script(WATCH)
     session = context.new_cdp_session(tab)
     session.send("Performance.enable")
+    if traced:
+        browser.start_tracing(page=tab, categories=["toplevel", "__metadata"])
     tab.goto(file.as_uri(), wait_until="commit")
     result = {"first view": float(tab.evaluate(FIRST_VIEW))}
     tab.wait_for_timeout(800)
     result["processor, first view"] = _busy_ms(session)
     equal(tab, data)
-    for name, key in (("arrow key", "ArrowRight"), ("end key", "End")):
-        before = _busy_ms(session)
-        result[name] = statistics.median(tab.evaluate(KEY, key) for _ in range(9))
-        result[f"processor, {name}"] = (_busy_ms(session) - before) / 9
-    for name, selector in (("toggle dominated", "[data-show=cloud]"), ("toggle infeasible", "[data-show=infeasible]")):
-        before = _busy_ms(session)
-        result[name] = statistics.median(tab.evaluate(TOGGLE, selector) for _ in range(6))
-        result[f"processor, {name}"] = (_busy_ms(session) - before) / 6
-    tasks = tab.evaluate("window.tasks.map(([, duration]) => duration)")
-    result["longest task"] = max(tasks, default=0.0)
+    masses = data.front()["mass_kg"].quantile([0.9, 0.7, 0.5, 0.3]).round(3)
+    conditions = [["#ask-mass_kg", str(mass)] for mass in masses]
+    steps: list[tuple[str, str, Sequence[Any]]] = [
+        ("arrow key", KEY, 9 * ["ArrowRight"]),
+        ("end key", KEY, 9 * ["End"]),
+        ("toggle dominated", CLICK, 6 * ["[data-show=cloud]"]),
+        ("toggle infeasible", CLICK, 6 * ["[data-show=infeasible]"]),
+        ("condition", TYPE, conditions),
+        ("reset", CLICK, ["#reset"]),
+    ]
+    _step(tab, session, result, steps)
+    tab.evaluate("document.getElementById('along').scrollIntoView()")
+    tab.wait_for_timeout(500)
+    _step(tab, session, result, [(f"{name}, along the front", script, given) for name, script, given in steps[-2:]])
+    tab.evaluate("document.getElementById('parallel').scrollIntoView()")
+    tab.wait_for_timeout(500)
+    _step(tab, session, result, [(f"{name}, parallel axes", script, given) for name, script, given in steps[-2:]])
+    if traced:
+        result = {"processor, longest task": longest_ms(json.loads(browser.stop_tracing()))}
     context.close()
     return result
+
+
+def _step(tab: Any, session: Any, result: dict[str, float], steps: Sequence[tuple[str, str, Sequence[Any]]]) -> None:
+    for name, script, given in steps:
+        before = _busy_ms(session)
+        result[name] = statistics.median(tab.evaluate(script, one) for one in given)
+        tab.wait_for_timeout(400)  # what is written or drawn later belongs to it
+        result[f"processor, {name}"] = (_busy_ms(session) - before) / len(given)
+
+
+def longest_ms(trace: Any) -> float:
+    """Processor time of the longest task of any main thread of a page in a trace."""
+    events = trace["traceEvents"]
+    main = {(e["pid"], e["tid"]) for e in events if e.get("args", {}).get("name") == "CrRendererMain"}
+    return max(float(e.get("tdur", 0)) for e in events if e["ph"] == "X" and (e["pid"], e["tid"]) in main) / 1000.0
 
 
 def _busy_ms(session: Any) -> float:
@@ -109,7 +138,7 @@ def equal(tab: Any, data: StudyData) -> None:
     Raises:
         AssertionError: it does not.
     """
-    drawn = tab.evaluate("document.getElementById('front-chart').data.map((t) => [t.name, t.x.length])")
+    drawn = tab.evaluate("document.getElementById('front-chart').layers.map((t) => [t.name, t.x.length])")
     front = data.front()
     feasible = int((data.trials["state"] == "feasible").sum())
     counts = dict(drawn)
@@ -144,7 +173,9 @@ def main() -> None:
         for study in (data, grown(data, given.trials)):
             file = Path(folder) / f"{len(study.trials)}.html"
             file.write_text(page(build([Source(data=study, resimulation=again, models={})])), encoding="utf-8")
-            tries = [measured(browser, file, study) for _ in range(given.tries)]
+            tries = [
+                measured(browser, file, study) | measured(browser, file, study, traced=True) for _ in range(given.tries)
+            ]
             figures = {name: round(statistics.median(one[name] for one in tries), 1) for name in tries[0]}
             size = {"trials": len(study.trials), "front": len(study.front()), "megabytes": file.stat().st_size / 1e6}
             print(json.dumps(size | {f"{name}, ms": value for name, value in figures.items()}, indent=1))

@@ -33,7 +33,7 @@ from pareto_monoped.campaign.results import (
 )
 from pareto_monoped.files import write_text
 from pareto_monoped.measures import Measure, measure
-from pareto_monoped.report.page import asset, embedded_json, plotly, policy
+from pareto_monoped.report.page import asset, deflated, embedded_json, plotly, policy
 from pareto_monoped.report.quantities import label_of, quantities_of
 from pareto_monoped.report.tables import safe
 
@@ -217,7 +217,7 @@ def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
     """Return the whole HTML text."""
     sections = sections_of(results, campaign.axes)
     own = "\n".join([*(asset(f"{name}.js") for name in SCRIPTS), _own("campaign.js")])
-    script = f"(() => {{\n'use strict';\n{own}\n}})();\n"
+    script = f"(async () => {{\n'use strict';\n{own}\n}})();\n"
     return Template(_own("campaign.html")).substitute(
         policy=policy(plotly(), script),
         title=safe(campaign.name),
@@ -229,7 +229,7 @@ def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
         sections="\n".join(_section(section, k, len(sections)) for k, section in enumerate(sections)),
         studies=studies_table(campaign, results),
         version=safe(__version__),
-        payload=embedded_json(_payload(sections)),
+        payload=deflated(embedded_json(_payload(sections))),
         plotly=plotly(),
         script=script,
     )

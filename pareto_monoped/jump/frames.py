@@ -47,8 +47,7 @@ class Recording:
 def frame_steps(lift_off_step: int, last_step: int, frames: int) -> NDArray[np.intp]:
     """Return which steps are kept: two thirds of them before lift-off, when most of the motion takes place.
 
-    Before lift-off and after it, frames lie equally many steps apart except at the first and last frame, which
-    ``report.jump_packing`` makes use of.
+    Before lift-off and after it, frames lie equally many steps apart except at the first and last frame.
     """
     stance = 2 * frames // 3
     before = max(-(-lift_off_step // (stance - 1)), 1)

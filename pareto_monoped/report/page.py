@@ -3,6 +3,7 @@
 import base64
 import hashlib
 import json
+import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, is_dataclass
 from functools import lru_cache
@@ -239,7 +240,7 @@ def literal_cases() -> tuple[dict[str, float | None], ...]:
 
 def page(payload: Payload) -> str:
     """Return the whole HTML text."""
-    script = "(() => {\n'use strict';\n" + "\n".join(asset(f"{name}.js") for name in SCRIPTS) + "\n})();\n"
+    script = "(async () => {\n'use strict';\n" + "\n".join(asset(f"{name}.js") for name in SCRIPTS) + "\n})();\n"
     return Template(asset("page.html")).substitute(
         policy=policy(plotly(), script),
         title=safe(payload.title),
@@ -256,16 +257,20 @@ def page(payload: Payload) -> str:
         context=context_section(payload),
         provenance=provenance_tables(payload),
         version=safe(payload.version),
-        payload=embedded_json(payload),
+        payload=deflated(embedded_json(payload)),
         plotly=plotly(),
         script=script,
     )
 
 
 def embedded_json(values: Any) -> str:
-    """Return JSON for a script element: without ``<``, it can neither end the element nor begin a comment."""
-    text = json.dumps(values, default=_plain, allow_nan=False, separators=(",", ":"))
-    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+    """Return a page's content as JSON."""
+    return json.dumps(values, default=_plain, allow_nan=False, separators=(",", ":"))
+
+
+def deflated(text: str) -> str:
+    """Return a text deflated and in base64: such letters can neither end a script element nor begin a comment."""
+    return base64.b64encode(zlib.compress(text.encode("utf-8"), 9)).decode("ascii")
 
 
 def _plain(value: Any) -> Any:

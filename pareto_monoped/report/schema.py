@@ -98,25 +98,14 @@ class Kit:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class JumpColumn:
-    """A column of packed jumps: its name, the value of one count, how counts are predicted, and its Rice parameter."""
-
-    name: str
-    count: float
-    predictor: str
-    rice: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Jumps:
-    """Jumps in a few frames each, packed as in ``report.jump_packing``."""
+    """Jumps in a few frames each, packed as in ``report.packing``."""
 
     keys: Sequence[int]  #: number of the trial or of the case that each belongs to
-    lengths: Sequence[int]  #: bytes of each
-    step_s: float  #: time of one simulated step
-    frames: int  #: moments of each jump; a jump of fewer steps has fewer
-    columns: Sequence[JumpColumn]  #: in the order in which they are packed
-    data: str  #: all jumps one after the other, in base64
+    lift_off_s: Sequence[float]  #: time of lift-off of each
+    frames: int  #: moments of each jump; a jump of fewer has no change of time after its last
+    counts: Mapping[str, float]  #: time and the other columns in the order in which they are packed: value of one count
+    data: str  #: changes of all jumps one after the other, column by column, deflated and in base64
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,5 +1,10 @@
 """Campaigns of made studies, for tests that no physics matters to."""
 
+import base64
+import json
+import re
+import zlib
+
 from pareto_monoped.campaign.folder import places_of
 from pareto_monoped.campaign.grid import load_campaign
 from pareto_monoped.campaign.results import results_of
@@ -29,3 +34,9 @@ def made_campaign(folder, axes, front_of, head=None):
         if made is not None:
             finished(place, *made, number)
     return campaign, results_of(places)
+
+
+def content_of(page):
+    """What the charts of a page are drawn from."""
+    text = re.search(r'id="payload">(.*?)</script>', page, re.S)[1]
+    return json.loads(zlib.decompress(base64.b64decode(text)))

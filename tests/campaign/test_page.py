@@ -1,6 +1,5 @@
 """Tables of a campaign's page, read with an HTML parser, against made studies whose numbers are known."""
 
-import json
 from dataclasses import replace
 from html.parser import HTMLParser
 
@@ -8,7 +7,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.campaign.page import campaign_page
-from tests.campaign.support import made_campaign
+from tests.campaign.support import content_of, made_campaign
 
 AXES = 'motors = ["U8", "U10"]\nseeds = [1, 2, 3]'
 
@@ -90,8 +89,7 @@ def test_charts_have_five_digits_and_nothing_where_there_is_no_value(made):
     campaign, results = made
     grown = [replace(one, history=np.array([[1.0, 12345.678], [5.0, 23456.789]])) for one in results]
     grown[2] = replace(grown[2], front=grown[2].front[:2])
-    text = campaign_page(campaign, grown).split('id="payload">')[1].split("</script>")[0]
-    (section,) = json.loads(text)["sections"]
+    (section,) = content_of(campaign_page(campaign, grown))["sections"]
     assert section["levels"][-1] == 1.0
     u8, u10 = section["groups"]
     assert u8["growth"] == {side: [12346] * 4 + [23457] for side in ("median", "low", "high")}

@@ -1,6 +1,7 @@
 """The page in headless Chromium, from a file, with the network off."""
 
 import io
+import json
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +15,7 @@ from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.pareto.selectors import Condition
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.exports import model_of
-from pareto_monoped.report.page import build, page, payload_of
+from pareto_monoped.report.page import build, embedded_json, page, payload_of
 from tests.report.conftest import cut, grown
 
 pytestmark = pytest.mark.browser
@@ -324,7 +325,8 @@ def test_studies_that_are_not_much_of_one_give_a_sensible_page(data, resimulatio
 
 def test_several_studies_lie_over_each_other_and_can_be_switched(db, more_seeds, weighted, folder, open_tab):
     file = folder / "several.html"
-    file.write_text(page(payload_of([db, *more_seeds, weighted], most_jumps=1)), encoding="utf-8")
+    content = payload_of([db, *more_seeds, weighted], most_jumps=1)
+    file.write_text(page(content), encoding="utf-8")
     tab = open_tab(file)
     tab.scroll_through()
 
@@ -333,7 +335,7 @@ def test_several_studies_lie_over_each_other_and_can_be_switched(db, more_seeds,
             "document.getElementById('front-chart').layers.filter((t) => t.name === 'front').length"
         )
 
-    made = tab.page.evaluate("JSON.parse(document.getElementById('payload').textContent)")
+    made = json.loads(embedded_json(content))
     labels = [card["label"] for card in made["studies"]]
     first = made["studies"][0]
     assert f"Trial {first['trials']['trial'][first['picks'][0]['row']]}, {labels[0]}" in tab.text("#subject")

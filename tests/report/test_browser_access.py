@@ -12,7 +12,8 @@ pytestmark = pytest.mark.browser
 AXE = (Path(__file__).parent / "axe" / "axe.min.js").read_text(encoding="utf-8")
 VIEWS = {
     "new": "",
-    "conditions": "#view=1&range=mass_kg::4.6&colour=electrical_energy_j&size=mass_kg&rows=all",
+    "conditions": "#view=1&range=mass_kg::4.6&colour=electrical_energy_j&size=mass_kg&rows=all"
+    "&parallel=height_m,mass_kg,peak_foot_force_n",
     "space": "#view=1&space=1&colour=mass_kg&log=x",
 }
 

@@ -342,7 +342,7 @@ def axis_of(tab, name):
             // Along an axis of another kind what lies evenly is the logarithm, or the inverse hyperbolic sine.
             const { kind, soft } = group.dataset;
             const even = kind === "log" ? Math.log10 : kind === "soft" ? (v) => Math.asinh(v / soft) : (v) => v;
-            const ticks = [...group.querySelectorAll("text")].slice(3)
+            const ticks = [...group.querySelectorAll("text")]
                 .map((t) => [number(t, "y") - 4, even(Number(t.textContent))]);
             const ends = { top: number(line, "y1"), bottom: number(line, "y2") };
             return { kind, soft: Number(soft), x: number(line, "x1"), ...ends, ticks };

@@ -1,6 +1,5 @@
 """The page of a campaign: its tables as text, its charts in headless Chromium without a network."""
 
-import json
 import re
 from dataclasses import replace
 
@@ -8,7 +7,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.campaign.page import campaign_page
-from tests.campaign.support import made_campaign
+from tests.campaign.support import content_of, made_campaign
 
 AXES = 'motors = ["U8", "U10"]\nrules = ["iso6336", "paper"]\nseeds = [1, 2, 3]'
 
@@ -65,11 +64,6 @@ def test_a_campaign_without_a_finished_study_has_a_page(tmp_path):
     assert "0 of 12 studies are finished" in campaign_page(campaign, results)
 
 
-def payload(text):
-    """What the charts are drawn from."""
-    return json.loads(re.search(r'id="payload">(.*?)</script>', text, re.S)[1])
-
-
 HEAD = 'name = "made"\ndescription = "links < 0.4 m <script>"\n[study]\nevaluations = 40\nstrength = false\n'
 
 
@@ -86,7 +80,7 @@ def three(tmp_path_factory):
 
 
 def test_curves_are_medians_and_bands_at_their_levels(three):
-    (section,) = payload(campaign_page(*three))["sections"]
+    (section,) = content_of(campaign_page(*three))["sections"]
     assert (section["pair"], section["first"]) == (["height_m", "energy_j"], [0])
     assert (section["levels"][0], section["levels"][-1]) == (0.7, 1.0)
     (group,) = section["groups"]
@@ -147,7 +141,7 @@ def wide(tmp_path_factory):
 def test_a_median_of_two_studies_is_one_of_them_and_the_page_says_so(wide):
     text = wide.read_text()
     assert "of an even number, one of the middle two" in text
-    assert payload(text)["sections"][0]["first"] == [4, 5, 6, 7, 8, 9, 10, 11]
+    assert content_of(text)["sections"][0]["first"] == [4, 5, 6, 7, 8, 9, 10, 11]
     first = cells(text, "By motor and gearbox rules and variables")[0]
     assert first[2][0] == first[2][1]
 

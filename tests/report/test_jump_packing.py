@@ -11,14 +11,14 @@ from pareto_monoped.robot.population import robot_arrays
 
 @st.composite
 def jumps(draw):
-    """A jump with any ends and any values, wild ones among them."""
+    """A jump with any ends and any values, ones among them that are as wild as two bytes can hold."""
     last = draw(st.integers(2, 3_000))
     lift_off = draw(st.integers(1, last - 1))
     frames = draw(st.integers(6, 56))
     steps = frame_steps(lift_off, last, frames)
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
-    size = draw(st.sampled_from([0.0, 0.01, 1.0, 500.0]))
-    values = {name: size * rng.standard_normal(len(steps)) for name in FRAME_COLUMNS}
+    counts = draw(st.sampled_from([0.0, 1.0, 30.0, 3000.0]))
+    values = {name: counts * COUNTS[name] * rng.standard_normal(len(steps)) for name in FRAME_COLUMNS}
     return frames, Recording(height_m=1.0, step_s=1e-3, lift_off_step=lift_off, steps=steps, columns=values)
 
 
@@ -49,8 +49,8 @@ def test_jumps_come_back_to_half_a_count_each_by_its_key(some):
             np.testing.assert_allclose(found[name], jump.columns[name], atol=0.5001 * count, rtol=0.0)
 
 
-def test_no_jumps_are_no_text():
-    assert packed({}, 56).data == ""
+def test_no_jumps_are_hardly_any_text():
+    assert len(packed({}, 56).data) < 16
 
 
 def test_a_real_jump_takes_a_tenth_of_what_it_took_as_numbers(data):

@@ -150,7 +150,9 @@ def test_the_scripts_read_the_same_numbers(shown, stored, browser):
         column, single, names = tab.evaluate(
             """([script, text]) => {
                 const page = JSON.parse(text);
-                const found = new Function("page", `${script}; return { columnOf, valueAt, knownNames };`)(page);
+                const bytesOf = (letters) => Uint8Array.from(atob(letters), (letter) => letter.charCodeAt(0));
+                const parts = `${script}; return { columnOf, valueAt, knownNames };`;
+                const found = new Function("page", "bytesOf", parts)(page, bytesOf);
                 const single = page.studies[0].trials.trial.map((_, row) => found.valueAt(0, "height_m.p05", row));
                 return [[...found.columnOf(0, "height_m.p05")], single, found.knownNames()];
             }""",

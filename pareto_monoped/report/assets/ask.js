@@ -85,11 +85,7 @@ function showAnswer(choose) {
 // The conditions in words, each with a button that drops it.
 function showConditions() {
   const box = byId("conditions");
-  const chip = (id, words, drop) => {
-    const button = make("button", { type: "button", "data-drop": id, "aria-label": `Drop the condition ${words}` }, `${words} ×`);
-    button.addEventListener("click", () => { drop(); box.querySelector("button")?.focus(); });
-    return button;
-  };
+  const chip = (id, words, drop) => buttonOf(`${words} ×`, () => { drop(); box.querySelector("button")?.focus(); }, { "data-drop": id, "aria-label": `Drop the condition ${words}` });
   const chips = Object.entries(state.ranges).map(([name, range]) => chip(name, conditionText(name, range), () => setRange(name, null)));
   for (const kit of state.withoutMotors) chips.push(chip(`motor-${kit}`, `without ${page.kits[kit].motor}`, () => showMotor(kit, true)));
   if (chips.length > 1) chips.push(chip("all", "all conditions", clearConditions));
@@ -97,10 +93,33 @@ function showConditions() {
   box.hidden = chips.length === 0;
 }
 
+// Two fields for the ends of a measure's range; a field has as its end what it stands for.
+function rangeFields(name, attributesOf) {
+  const fields = ["from", "to"].map((word) => make("input", { type: "number", step: "any", class: "range", placeholder: word, ...attributesOf(word) }));
+  fields.forEach((field, side) => {
+    field.end = [name, side];
+    field.addEventListener("change", () => {
+      const typed = fields.map((one) => (Number.isFinite(one.valueAsNumber) ? one.valueAsNumber / quantity[name].scale : null));
+      setRange(name, typed.includes(null) || typed[0] <= typed[1] ? typed : typed.reverse());
+    });
+  });
+  return fields;
+}
+
+// What fields show follows the conditions, but for the one that is being typed in.
+function fillRanges() {
+  for (const field of document.querySelectorAll(".range")) {
+    const [name, side] = field.end, end = state.ranges[name]?.[side] ?? null;
+    if (document.activeElement !== field) field.value = end === null ? "" : Number((end * quantity[name].scale).toPrecision(9));
+  }
+}
+
 function startAsk() {
   const fields = [...document.querySelectorAll("[data-ask]")];
   for (const field of fields) {
     const name = field.dataset.ask, end = askedEnd(name);
+    field.classList.add("range");
+    field.end = [name, end];
     field.addEventListener("input", () => {
       const range = [...(state.ranges[name] ?? [null, null])];
       range[end] = Number.isFinite(field.valueAsNumber) ? field.valueAsNumber / quantity[name].scale : null;
@@ -113,15 +132,12 @@ function startAsk() {
   const ways = byId("best");
   ways.append(
     make("optgroup", { label: "on the front" }, ...[["", "best that is left"], ["knee", "knee"], ["compromise", "compromise"]].map(([value, words]) => make("option", { value }, words))),
-    ...["least", "most"].map((word) => make("optgroup", { label: `${word} of any` }, ...knownNames().filter((name) => page.axes.includes(name)).map((name) => make("option", { value: `${word} ${name}` }, `${word} ${quantity[name].label}`)))),
+    ...["least", "most"].map((word) => make("optgroup", { label: `${word} of any` }, ...axisNames().map((name) => make("option", { value: `${word} ${name}` }, `${word} ${quantity[name].label}`)))),
   );
   ways.addEventListener("change", () => { setBest(ways.value); showAnswer(true); });
   byId("ask").addEventListener("submit", (event) => { event.preventDefault(); showAnswer(true); });
   const follow = ({ final }) => {
-    for (const field of fields) {
-      const value = state.ranges[field.dataset.ask]?.[askedEnd(field.dataset.ask)] ?? null;
-      if (document.activeElement !== field || !final) field.value = value === null ? "" : Number((value * quantity[field.dataset.ask].scale).toPrecision(9));
-    }
+    fillRanges();
     ways.value = state.best;
     showConditions();
     if (final) showAnswer(false);

@@ -20,7 +20,7 @@ const PHONE_PX = 700; // as in the style sheet
 function startAxes() {
   const box = byId("axes");
   const pick = (id, label, key, extra = []) => {
-    const choice = make("select", { id }, ...extra.map(([value, words]) => make("option", { value }, words)), ...optionsOf(knownNames().filter((name) => page.axes.includes(name))));
+    const choice = make("select", { id }, ...extra.map(([value, words]) => make("option", { value }, words)), ...optionsOf(axisNames()));
     const logOf = { x: (name) => ({ logX: asksForLog(name) }), y: (name) => ({ logY: asksForLog(name) }) }[key] ?? (() => ({}));
     choice.addEventListener("change", () => setAxes({ [key]: choice.value, ...logOf(choice.value) }));
     const follow = () => { choice.value = state.axes[key]; };
@@ -28,14 +28,7 @@ function startAxes() {
     on("axes", follow);
     return make("label", {}, `${label} `, choice);
   };
-  const check = (id, label, key) => {
-    const input = make("input", { type: "checkbox", id });
-    const follow = () => { input.checked = state.axes[key]; };
-    follow();
-    input.addEventListener("change", () => setAxes({ [key]: input.checked }));
-    on("axes", follow);
-    return make("label", {}, input, label);
-  };
+  const check = (id, label, key) => switchOf({ id }, "", label, "axes", () => state.axes[key], (shown) => setAxes({ [key]: shown }));
   const third = page.objectives.length > 2;
   const group = KITS.length ? "motor" : page.studies.length > 1 ? "study" : "none";
   const turn = make("input", { type: "range", id: "turn", min: -90, max: 90, value: -35, "aria-label": "Turn the 3D view" });
@@ -49,16 +42,6 @@ function startAxes() {
     pick("colour", "Colour", "colour", third ? [["auto", "third objective"], ["", group]] : [["auto", group]]), pick("size", "Size", "size", [["", "all alike"]]),
     check("space", "3D", "space"), turnLabel,
   );
-  for (const [words, label, factor] of [["+", "Zoom in", 1 / 1.5], ["−", "Zoom out", 1.5], ["Whole", "Show the whole front", 0]]) {
-    const button = make("button", { type: "button", "aria-label": label, title: label }, words);
-    button.addEventListener("click", () => zoomFront(factor));
-    box.append(button);
-  }
-  for (const format of ["png", "svg"]) {
-    const button = make("button", { type: "button" }, format.toUpperCase());
-    button.addEventListener("click", () => front.picture(format));
-    box.append(button);
-  }
 }
 
 // The colours' numbers and the sizes' range under the chart.

@@ -17,8 +17,8 @@ const FONT = { family: "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, 
 
 // The line, areas, bars and few marks of a layer as traces.
 function tracesOf(layer) {
-  const { line, marker, mode, name } = layer, thin = mode.includes("lines") && layer.x.length > CROWD ? thinned(layer) : null;
-  const [x, y] = thin ? [layer.x, layer.y].map((list) => thin.map((i) => list[i])) : [layer.x, layer.y];
+  const { line, marker, mode, name } = layer, kept = mode.includes("lines") && layer.x.length > CROWD ? thinned(layer) : null;
+  const [x, y] = kept ? [layer.x, layer.y].map((list) => kept.map((i) => list[i])) : [layer.x, layer.y];
   const common = { x, y, name, type: "scatter", hoverinfo: "skip", showlegend: false, cliponaxis: false };
   if (mode === "area") return [{ ...common, y, mode: "lines", line: { width: 0, color: layer.fill } }, { ...common, y: layer.y2, mode: "lines", line: { width: 0, color: layer.fill }, fill: "tonexty", fillcolor: faded(layer.fill, 0.2) }];
   if (mode === "bars") {
@@ -35,9 +35,11 @@ function tracesOf(layer) {
   }];
 }
 
+function toolOf(title, icon, click) { return { name: title, title, icon: Plotly.Icons[icon], click }; }
+
 function configOf(picture, tools, scrollZoom) {
-  const button = (format) => ({ name: `picture ${format}`, title: `Picture as ${format.toUpperCase()}`, icon: format === "png" ? Plotly.Icons.camera : Plotly.Icons.disk, click: () => picture(format) });
-  return { displaylogo: false, responsive: false, scrollZoom, doubleClick: false, displayModeBar: !COARSE, showTips: false, modeBarButtons: [...(tools.length ? [tools] : []), [button("png"), button("svg")]] };
+  const pictures = [toolOf("Picture as PNG", "camera", () => picture("png")), toolOf("Picture as SVG", "disk", () => picture("svg"))];
+  return { displaylogo: false, responsive: false, scrollZoom, doubleClick: false, displayModeBar: true, showTips: false, modeBarButtons: [...(tools.length ? [tools] : []), pictures] };
 }
 
 // Plotly's bar of tools stands beside a chart, because a picture or a slider for a screen reader may hold no buttons.
@@ -49,27 +51,41 @@ function framed(node) {
   box.append(node);
 }
 
-// The points of a line that move it by half a pixel.
-function thinned({ px, py, x }) {
-  const kept = [];
-  let last = -1;
-  for (let i = 0; i < x.length; i += 1) {
-    if (last >= 0 && i < x.length - 1 && Math.abs(px[i] - px[last]) + Math.abs(py[i] - py[last]) < 1 / 2) continue;
-    kept.push(i);
-    last = i;
-  }
-  return kept;
+// The points of a line that move it by half a pixel, and its ends.
+function thinned({ px, py }) {
+  let last = 0;
+  return [...px.keys()].filter((i) => {
+    const near = i > 0 && i < px.length - 1 && Math.abs(px[i] - px[last]) + Math.abs(py[i] - py[last]) < 1 / 2;
+    if (!near) last = i;
+    return !near;
+  });
 }
 
 function each(list, change) { return Array.isArray(list) ? list.map(change) : change(list); }
 
-function faded(tint, alpha) { return `rgba(${rgbOf(tint).join(",")},${alpha})`; }
+// A colour of the style sheet with some opacity.
+function faded(tint, alpha) { return tint + Math.round(255 * alpha).toString(16).padStart(2, "0"); }
 
 function axisLook(title, kind, range) {
   return {
     title: { text: plain(title), standoff: 6 }, type: kind, range: kind === "log" ? range.map(Math.log10) : range, gridcolor: colour("grid"), linecolor: colour("line"), mirror: true, showline: true,
     zeroline: false, tickcolor: colour("line"), color: colour("soft"), automargin: false, nticks: 8, exponentformat: "none", minexponent: 6, ...(kind === "log" ? { dtick: Math.log10(range[1] / range[0]) > 1.3 ? "D2" : undefined } : {}),
   };
+}
+
+// Where a pointer is in an element.
+function pointerIn(node, event) {
+  const box = node.getBoundingClientRect();
+  return [event.clientX - box.left - node.clientLeft, event.clientY - box.top - node.clientTop];
+}
+
+// Words in a box beside a place of a chart of this width.
+function showTip(tip, words, [x, y], width) {
+  tip.innerHTML = words; // they were made plain where they were put together
+  tip.hidden = false;
+  const own = tip.offsetWidth;
+  tip.style.left = `${Math.min(Math.max(x + 14 + own > width ? x - own - 14 : x + 14, 0), Math.max(width - own, 0))}px`;
+  tip.style.top = `${Math.max(y - tip.offsetHeight / 2, 0)}px`;
 }
 
 class Chart {
@@ -82,7 +98,6 @@ class Chart {
     node.replaceChildren(this.back, this.tip);
     if (label) describe(node, label);
     this.listen();
-    new ResizeObserver(() => { if (this.drawn && (node.clientWidth !== this.drawn[0] || node.clientHeight !== this.drawn[1])) this.draw(); }).observe(node);
   }
 
   // x and y: { title, range, kind }; the view stays while the key stays.
@@ -98,7 +113,6 @@ class Chart {
   measure() {
     const { node, margin } = this;
     const width = Math.max(node.clientWidth, 200), height = Math.max(node.clientHeight, 150);
-    this.drawn = [node.clientWidth, node.clientHeight];
     this.box = { left: margin.l, top: margin.t, width: width - margin.l - margin.r, height: height - margin.t - margin.b, all: [width, height] };
     const { x, y } = this.given;
     this.x = scaleOf(this.view?.x ?? x.range, x.kind, x.unit);
@@ -131,7 +145,8 @@ class Chart {
 
   // One object per chart: another one makes plotly begin anew.
   config() {
-    this.configs ??= configOf((format) => this.picture(format), ["zoom2d", "pan2d", ...(this.framed ? ["select2d", "lasso2d"] : [])], !COARSE && Boolean(this.chosen));
+    const steps = ["zoomIn2d", "zoomOut2d", toolOf("Show the whole", "home", () => this.whole())];
+    this.configs ??= configOf((format) => this.picture(format), ["zoom2d", "pan2d", ...(this.framed ? ["select2d", "lasso2d"] : []), ...steps], !COARSE && Boolean(this.chosen));
     return this.configs;
   }
 
@@ -143,23 +158,15 @@ class Chart {
   // Crowds of marks: clouds under the lines, marks of a front over them.
   images() {
     const { left, top, width, height } = this.box, scale = paperScale() ?? (window.devicePixelRatio || 1);
-    const painted = (layers, paint) => {
+    const painted = (layers) => {
       if (!layers.length) return [];
-      const canvas = make("canvas", { width: Math.round(width * scale), height: Math.round(height * scale) });
-      paint(softly(canvas));
+      const canvas = make("canvas", { width: Math.round(width * scale), height: Math.round(height * scale) }), context = softly(canvas);
+      context.translate(-left * scale, -top * scale);
+      for (const layer of layers) paintMarks(context, layer, scale);
       return [canvas.toDataURL()];
     };
-    const clouds = this.layers.filter((layer) => layer.cloud), marks = this.layers.filter((layer) => (layer.crowd || (this.space && layer.mode.includes("markers"))) && !layer.cloud);
-    const under = painted(clouds, (context) => {
-      const image = context.createImageData(context.canvas.width, context.canvas.height);
-      for (const layer of clouds) paintCloud(image, layer, scale, left, top);
-      context.putImageData(image, 0, 0);
-    });
-    const over = painted(marks, (context) => {
-      context.scale(scale, scale);
-      context.translate(-left, -top);
-      for (const layer of marks) paintMarks(context, layer, scale);
-    });
+    const under = painted(this.layers.filter((layer) => layer.cloud));
+    const over = painted(this.layers.filter((layer) => (layer.crowd || (this.space && layer.mode.includes("markers"))) && !layer.cloud));
     return [[under, "below"], [over, "above"]].flatMap(([sources, layer]) => sources.map((source) => ({ source, layer, ...this.spot() })));
   }
 
@@ -170,9 +177,8 @@ class Chart {
   }
 
   place(layer) {
-    const own = (list, to) => Float32Array.from(list, to);
-    layer.px = own(layer.x, (v) => this.px(v));
-    layer.py = own(layer.y, (v) => this.py(v));
+    layer.px = new Float32Array(layer.x.map((v) => this.px(v)));
+    layer.py = new Float32Array(layer.y.map((v) => this.py(v)));
   }
 
   // Names beside marks, each where it covers neither a name nor a mark, else at the end of a short line.
@@ -237,13 +243,12 @@ class Chart {
   // Plotly's own layer takes the mouse's events; those of pointers pass it.
   listen() {
     const { node } = this;
-    const place = (event) => { const box = node.getBoundingClientRect(); return [event.clientX - box.left - node.clientLeft, event.clientY - box.top - node.clientTop]; };
     let start = null, clicked = { time: -Infinity, at: [0, 0] };
-    node.addEventListener("pointerdown", (event) => { if (event.isPrimary && event.button === 0 && !event.target.closest(".modebar")) start = place(event); }, true);
-    node.addEventListener("pointermove", (event) => { if (!start && this.box) this.hover(...place(event)); }, true);
+    node.addEventListener("pointerdown", (event) => { if (event.isPrimary && event.button === 0 && !event.target.closest(".modebar")) start = pointerIn(node, event); }, true);
+    node.addEventListener("pointermove", (event) => { if (!start && this.box) this.hover(...pointerIn(node, event)); }, true);
     window.addEventListener("pointerup", (event) => {
       if (!start) return;
-      const from = start, to = place(event);
+      const from = start, to = pointerIn(node, event);
       start = null;
       if (Math.hypot(to[0] - from[0], to[1] - from[1]) > 4) { this.dragged?.(from, to); return; }
       const again = event.timeStamp - clicked.time < 400 && Math.hypot(to[0] - clicked.at[0], to[1] - clicked.at[1]) < 8;
@@ -262,12 +267,7 @@ class Chart {
     const inside = x >= left && x <= left + width && y >= top && y <= top + height;
     const found = inside ? this.nearest(x, y, NEAR_PX, "text") : null, words = found?.layer.text(found.i);
     if (!words) { this.hideTip(); return; }
-    const { tip } = this, [px, py] = [found.layer.px[found.i], found.layer.py[found.i]];
-    tip.innerHTML = words; // they were made plain where they were put together
-    tip.hidden = false;
-    const own = tip.offsetWidth;
-    tip.style.left = `${Math.min(Math.max(px + 14 + own > all[0] ? px - own - 14 : px + 14, 0), Math.max(all[0] - own, 0))}px`;
-    tip.style.top = `${Math.max(py - tip.offsetHeight / 2, 0)}px`;
+    showTip(this.tip, words, [found.layer.px[found.i], found.layer.py[found.i]], all[0]);
   }
 
   hideTip() { this.tip.hidden = true; }

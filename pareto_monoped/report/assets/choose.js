@@ -12,10 +12,13 @@ function soundRows(study) {
   return soundOnes.get(study);
 }
 
-function feasibleRows(study) {
-  if (!study.feasible) study.feasible = [...study.trials.state].flatMap((letter, row) => (letter === "f" ? [row] : []));
-  return study.feasible;
+// Rows of a study's trials in a state.
+function rowsIn(study, wanted) {
+  study.rows ??= {};
+  return (study.rows[wanted] ??= [...study.trials.state].flatMap((letter, row) => (letter === wanted ? [row] : [])));
 }
+
+function feasibleRows(study) { return rowsIn(study, "f"); }
 
 // Every end of a range is a condition { name, side: 0 at least or 1 at most, value }.
 function conditionList() {
@@ -93,24 +96,13 @@ function keptFront(study) {
 
 // Some designs of all studies shown as one table: how many, where each stands, and its costs in the page's objectives.
 function pooled(rowsOf) {
-  const parts = [...state.visible].sort((a, b) => a - b).map((study) => [study, rowsOf(study)]), size = parts.reduce((sum, [, rows]) => sum + rows.length, 0);
+  const stands = [...state.visible].sort((a, b) => a - b).flatMap((study) => rowsOf(study).map((row) => [study, row]));
   const joined = (valuesOf) => {
-    const all = new Float32Array(size);
-    let at = 0;
-    for (const [study, rows] of parts) {
-      const values = valuesOf(study);
-      for (const row of rows) { all[at] = values[row]; at += 1; }
-    }
+    const columns = page.studies.map((_, study) => valuesOf(study)), all = new Float32Array(stands.length);
+    stands.forEach(([study, row], i) => { all[i] = columns[study][row]; });
     return all;
   };
-  const stand = (i) => {
-    for (const [study, rows] of parts) {
-      if (i < rows.length) return [study, rows[i]];
-      i -= rows.length;
-    }
-    return null;
-  };
-  return { size, stand, joined, costs: page.objectives.map((name) => joined((study) => costOf(study, name))) };
+  return { size: stands.length, stand: (i) => stands[i], joined, costs: page.objectives.map((name) => joined((study) => costOf(study, name))) };
 }
 
 function counted(size) { return Array.from({ length: size }, (_, i) => i); }

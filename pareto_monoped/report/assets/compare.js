@@ -1,7 +1,5 @@
 // Kept designs side by side: one table of what differs, their jumps over each other, and their robots playing together.
 
-const race = { time: 0, playing: false, last: 0, request: 0, entries: [] };
-
 function comparedRows(designs) {
   const value = (name) => (chosen) => chosen.values[name] ?? valueAt(chosen.index, name, chosen.row);
   const measured = [...new Set([...page.goals, ...page.compared])].filter((name) => designs.some((one) => value(name)(one) !== null));
@@ -71,32 +69,12 @@ function raceStage(designs) {
   return svg;
 }
 
-function raceEnd() { return race.entries.reduce((most, { jump }) => Math.max(most, jump ? jump.time_s.at(-1) : 0), 0); }
-
-function setRaceTime(time) {
-  race.time = Math.min(Math.max(time, 0), raceEnd());
+// All kept designs jump at once.
+const race = new Player(["race-play", "race-scrub", "race-speed"], "Play all", () => Math.max(0, ...race.entries.map(({ jump }) => jump?.time_s.at(-1) ?? 0)), () => {
   for (const { jump, pose } of race.entries) pose(jump, jump ? Math.min(race.time, jump.time_s.at(-1)) : 0);
-  byId("race-scrub").value = raceEnd() ? Math.round(1000 * race.time / raceEnd()) : 0;
-  byId("race-scrub").setAttribute("aria-valuetext", `${round(race.time)} s of ${round(raceEnd())} s`);
   if (race.cursor) race.cursor.style.left = `${race.chart.toX(race.time)}px`;
-}
-
-function playRace(playing) {
-  race.playing = playing && raceEnd() > 0;
-  byId("race-play").textContent = race.playing ? "Pause" : "Play all";
-  cancelAnimationFrame(race.request);
-  if (!race.playing) return;
-  if (race.time >= raceEnd()) race.time = 0;
-  race.last = performance.now();
-  const step = (now) => {
-    if (!race.playing) return;
-    setRaceTime(race.time + (now - race.last) / 1000 * Number(byId("race-speed").value));
-    race.last = now;
-    if (race.time >= raceEnd()) playRace(false);
-    else race.request = requestAnimationFrame(step);
-  };
-  race.request = requestAnimationFrame(step);
-}
+});
+race.entries = [];
 
 let compared = "";
 
@@ -104,7 +82,6 @@ function showComparison() {
   const key = state.shortlist.map(({ study, row }) => `${study}:${row}`).join(" ");
   if (key === compared) return;
   compared = key;
-  playRace(false);
   const enough = state.shortlist.length > 1;
   byId("comparison").hidden = !enough;
   race.entries = [];
@@ -115,18 +92,16 @@ function showComparison() {
   byId("race-stage").replaceChildren(raceStage(designs));
   const jumping = race.entries.filter(({ jump }) => jump);
   const chart = make("div", { class: "cells" });
-  byId("race-chart").replaceChildren(jumping.length ? chart : make("p", { class: "small" }, "This page has no jumps of these designs."));
+  byId("race-chart").replaceChildren(jumping.length ? chart : small("This page has no jumps of these designs."));
   if (jumping.length) jumpsChart(chart, jumping);
   const missing = race.entries.length - jumping.length;
-  if (missing && jumping.length) byId("race-chart").append(make("p", { class: "small" }, `${missing} of them ${missing > 1 ? "are" : "is"} not on a front, so this page has no jump of ${missing > 1 ? "them" : "it"}.`));
-  for (const id of ["race-play", "race-scrub", "race-speed"]) byId(id).disabled = !jumping.length;
+  if (missing && jumping.length) byId("race-chart").append(small(`${missing} of them ${missing > 1 ? "are" : "is"} not on a front, so this page has no jump of ${missing > 1 ? "them" : "it"}.`));
   byId("export-all").replaceChildren(commandLine(exportCommand()));
-  setRaceTime(jumping.length ? Math.min(...jumping.map(({ jump }) => jump.lift_off_s)) : 0);
+  race.reset(jumping.length > 0);
+  race.set(jumping.length ? Math.min(...jumping.map(({ jump }) => jump.lift_off_s)) : 0);
 }
 
 function startComparison() {
-  byId("race-play").addEventListener("click", () => playRace(!race.playing));
-  byId("race-scrub").addEventListener("input", () => { playRace(false); setRaceTime(byId("race-scrub").value / 1000 * raceEnd()); });
   on("shortlist", showComparison);
   showComparison();
 }

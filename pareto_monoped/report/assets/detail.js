@@ -2,12 +2,9 @@
 
 function showSubject(chosen) {
   const box = byId("subject");
-  box.replaceChildren();
   byId("headline").replaceChildren();
-  if (!chosen) {
-    box.append("Nothing is selected.");
-    return;
-  }
+  box.replaceChildren(...(chosen ? [] : ["Nothing is selected."]));
+  if (!chosen) return;
   const several = page.studies.length > 1 ? `, ${chosen.study.label}` : "";
   box.append(chosen.kind === "case" ? `The paper's ${chosen.name === "nominal" ? "nominal design" : `Case ${chosen.name}`}, simulated here${several}` : `Trial ${chosen.number}${several}`);
   const motor = chosen.study.trials.columns.motor ? `${page.kits[chosen.kit].motor}; ` : "";
@@ -31,31 +28,18 @@ function showSubject(chosen) {
 
 // A way from a dear design to the one that takes the least from the battery at its height.
 function dearer(height) {
-  const button = make("button", { type: "button" }, "Show that");
-  button.addEventListener("click", () => { state.best = `least ${BATTERY}`; setRange("height_m", [height, null]); showAnswer(true); });
-  return button;
+  return buttonOf("Show that", () => { state.best = `least ${BATTERY}`; setRange("height_m", [height, null]); showAnswer(true); });
 }
 
-function showVariables(chosen) {
+function variablesOf(chosen) {
   const box = make("div", { class: "bounds" });
-  if (chosen) {
-    for (const variable of page.variables) {
-      const q = quantity[variable.name];
-      const [low, high] = chosen.study.bounds[variable.name];
-      const value = chosen.values[variable.name];
-      const label = make("span", { title: `${variable.symbol}: ${variable.meaning}` }, q.label);
-      const track = make("div", { class: "track", "aria-hidden": "true" });
-      if (high > low) {
-        const dot = make("u");
-        dot.style.left = `${Math.min(Math.max((value - low) / (high - low), 0), 1) * 100}%`;
-        track.append(dot, make("em", {}, tickText(low * q.scale)), make("em", {}, tickText(high * q.scale)));
-      } else {
-        track.append(make("em", {}, "fixed"));
-      }
-      box.append(label, track, make("b", {}, shown(variable.name, value)));
-    }
+  for (const { name, symbol, meaning } of page.variables) {
+    const { label, scale } = quantity[name], [low, high] = chosen.study.bounds[name], value = chosen.values[name];
+    const share = Math.min(Math.max((value - low) / (high - low), 0), 1);
+    const ends = high > low ? [make("u", { style: `left: ${100 * share}%` }), ...[low, high].map((end) => make("em", {}, tickText(end * scale)))] : [make("em", {}, "fixed")];
+    box.append(make("span", { title: `${symbol}: ${meaning}` }, label), make("div", { class: "track", "aria-hidden": "true" }, ...ends), make("b", {}, shown(name, value)));
   }
-  byId("variables").replaceChildren(box);
+  return [box];
 }
 
 function gearDrawing(gearbox, widest) {
@@ -85,16 +69,9 @@ function table(head, rows) {
   return node;
 }
 
-function showGears(chosen) {
-  const box = byId("gears");
-  box.replaceChildren();
-  const { hip, knee } = chosen ?? {};
-  if (!hip || !knee) {
-    box.append(make("p", { class: "small" }, chosen ? "No gearbox exists for this design's ratios." : "Nothing is selected."));
-    return;
-  }
+function gearsOf({ hip, knee }) {
+  if (!hip || !knee) return [small("No gearbox exists for this design's ratios.")];
   const widest = Math.max(...[hip, knee].flatMap((g) => [g.motor_diameter_mm, g.module_mm * g.ring_teeth + 6]));
-  box.append(make("div", { class: "gearpair" }, gearDrawing(hip, widest), gearDrawing(knee, widest)));
   const rows = [
     ["motor", (g) => g.motor],
     ["family", (g) => g.family],
@@ -108,18 +85,12 @@ function showGears(chosen) {
     ["no-load speed", (g) => `${round(g.no_load_speed_rad_per_s, 1)} rad/s`],
     ["mesh efficiency", (g) => `${round(100 * g.efficiency, 1)} %`],
   ];
-  box.append(table(["", "hip", "knee"], rows.map(([name, of]) => [name, of(hip), of(knee)])));
+  return [make("div", { class: "gearpair" }, gearDrawing(hip, widest), gearDrawing(knee, widest)), table(["", "hip", "knee"], rows.map(([name, of]) => [name, of(hip), of(knee)]))];
 }
 
-function showMass(chosen) {
-  const box = byId("mass");
-  box.replaceChildren();
-  const total = chosen?.measures.mass_kg;
-  if (!total) {
-    box.append(make("p", { class: "small" }, chosen ? "No robot was built from this design." : "Nothing is selected."));
-    return;
-  }
-  const { hip, knee, more, study } = chosen;
+function massOf({ hip, knee, more, study, measures }) {
+  const total = measures.mass_kg;
+  if (!total) return [small("No robot was built from this design.")];
   const rows = [];
   if (hip) rows.push(["hip actuator", hip.mass_kg]);
   if (knee) rows.push(["knee actuator", knee.mass_kg]);
@@ -130,44 +101,27 @@ function showMass(chosen) {
     rows.push(["base frame, thigh, shank and foot", total - rows.reduce((sum, row) => sum + row[1], 0)]);
   }
   const shades = ["--c1", "--c0", "--c4", "--c2", "--c3", "--dark"];
-  const bar = make("div", { class: "stack", "aria-hidden": "true" });
-  const body = rows.map(([name, mass], i) => {
-    const piece = make("i");
-    piece.style.width = `${100 * Math.max(mass, 0) / total}%`;
-    piece.style.background = `var(${shades[i]})`;
-    bar.append(piece);
-    const swatch = make("span", { class: "swatch" });
-    swatch.style.background = `var(${shades[i]})`;
-    return make("tr", {}, make("th", { scope: "row" }, swatch, name), make("td", { class: "n" }, `${round(mass)} kg`), make("td", { class: "n" }, `${round(100 * mass / total, 0)} %`));
-  });
-  body.push(make("tr", {}, make("th", { scope: "row" }, make("b", {}, "robot")), make("td", { class: "n" }, make("b", {}, `${round(total)} kg`)), make("td", { class: "n" }, "100 %")));
-  box.append(bar, make("table", {}, make("tbody", {}, ...body)));
+  const pieces = rows.map(([, mass], i) => make("i", { style: `width: ${100 * Math.max(mass, 0) / total}%; background: var(${shades[i]})` }));
+  const named = (name, i) => make("span", {}, make("span", { class: "swatch", style: `background: var(${shades[i]})` }), name);
+  const body = rows.map(([name, mass], i) => [named(name, i), `${round(mass)} kg`, `${round(100 * mass / total, 0)} %`]);
+  return [make("div", { class: "stack", "aria-hidden": "true" }, ...pieces), table(null, [...body, [make("b", {}, "robot"), make("b", {}, `${round(total)} kg`), "100 %"]])];
 }
 
-function showMeasures(chosen) {
-  const box = byId("measures");
-  box.replaceChildren();
-  if (!chosen) return;
+function measuresOf(chosen) {
   const all = { ...chosen.measures, ...chosen.more };
   const skip = new Set([...page.variables.map((v) => v.name), "reason", "status"]);
   const rows = page.quantities.filter((q) => !skip.has(q.name) && all[q.name] !== undefined && all[q.name] !== null && typeof all[q.name] === "number")
     .map((q) => [q.label, shown(q.name, all[q.name])]);
-  box.append(rows.length ? table(null, rows) : make("p", { class: "small" }, "No jump, no measures."));
+  return [rows.length ? table(null, rows) : small("No jump, no measures.")];
 }
 
-function showAudit(chosen) {
-  const box = byId("audit");
-  box.replaceChildren();
-  const audit = chosen?.audit;
-  if (chosen?.kind === "trial") box.append(...[asBuilt(chosen), gapOf(chosen.index, chosen.row)].filter(Boolean).map((words) => make("p", { class: "small built" }, words)));
-  if (!audit) {
-    box.append(make("p", { class: "small" }, chosen?.kind === "trial" && chosen.at >= 0 ? "Not audited yet: the front is audited when the study ends." : chosen ? "Only designs on the front are audited." : "Nothing is selected."));
-    return;
-  }
-  const { good, reason, ...found } = audit;
-  box.append(make("p", { class: `verdict${good ? "" : " no"}` }, good ? "Well-conditioned: neither rounding nor the time step decides its height and energy." : `Ill-conditioned: ${reason}.`));
+function auditOf(chosen) {
+  const built = chosen.kind === "trial" ? [asBuilt(chosen), gapOf(chosen.index, chosen.row)].filter(Boolean).map(small) : [];
+  if (!chosen.audit) return [...built, small(chosen.at >= 0 ? "Not audited yet: the front is audited when the study ends." : "Only designs on the front are audited.")];
+  const { good, reason, ...found } = chosen.audit;
+  const verdict = good ? "Well-conditioned: neither rounding nor the time step decides its height and energy." : `Ill-conditioned: ${reason}.`;
   const rows = Object.entries(found).map(([name, value]) => [quantity[name].label, shown(name, value)]);
-  box.append(table(["what changes", "by"], rows));
+  return [...built, make("p", { class: `verdict${good ? "" : " no"}` }, verdict), table(["what changes", "by"], rows)];
 }
 
 // The physical test beside the numerical one: what jumps under uncertainty say of a design.
@@ -194,46 +148,21 @@ function commandsOf(chosen) {
   return [`pareto-monoped pick ${db} --trial ${chosen.number}`, `pareto-monoped export ${db} --trial ${chosen.number} -o cad/trial_${chosen.number}`, simulate];
 }
 
-function showCommands(chosen) {
-  const box = byId("commands");
-  box.replaceChildren();
-  if (!chosen) return;
-  box.append(...commandsOf(chosen).map(commandLine));
-}
-
 // A command with a button that copies it.
 function commandLine(line) {
-  const button = make("button", { type: "button", "aria-label": `Copy: ${line}` }, "Copy");
-  button.addEventListener("click", async () => {
+  const button = buttonOf("Copy", async () => {
     button.textContent = await copied(line) ? "Copied" : "Select it";
     setTimeout(() => { button.textContent = "Copy"; }, 1500);
-  });
+  }, { "aria-label": `Copy: ${line}` });
   return make("div", { class: "command" }, make("code", {}, line), button);
 }
 
-async function copied(line) {
-  try {
-    await navigator.clipboard.writeText(line);
-    return true;
-  } catch {
-    // A page opened as a file may have no clipboard; the older way still works there.
-    const area = make("textarea", { style: "position: fixed; opacity: 0" });
-    area.value = line;
-    document.body.append(area);
-    area.select();
-    const done = document.execCommand("copy");
-    area.remove();
-    return done;
-  }
-}
+// Whether the clipboard took it.
+async function copied(line) { return (navigator.clipboard?.writeText(line).then(() => true, () => false)) ?? false; }
 
 function showAll() {
   const chosen = subject();
   showSubject(chosen);
-  showVariables(chosen);
-  showGears(chosen);
-  showMass(chosen);
-  showMeasures(chosen);
-  showAudit(chosen);
-  showCommands(chosen);
+  const parts = { variables: variablesOf, gears: gearsOf, mass: massOf, measures: measuresOf, audit: auditOf, commands: (one) => commandsOf(one).map(commandLine) };
+  for (const [id, nodesOf] of Object.entries(parts)) byId(id).replaceChildren(...(chosen ? nodesOf(chosen) : [small("Nothing is selected.")]));
 }

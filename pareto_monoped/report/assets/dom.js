@@ -1,7 +1,7 @@
 // Small helpers: elements, numbers, colours. Text from a study becomes textContent, never markup.
 
 const SVG = "http://www.w3.org/2000/svg";
-const page = JSON.parse(document.getElementById("payload").textContent);
+const page = JSON.parse(await inflated(bytesOf(document.getElementById("payload").textContent)).text());
 const { gravity_m_per_s2: GRAVITY, base_start_height_m: START_HEIGHT } = page.constants;
 // How each measure and variable is shown, by its name; asking for one that Python does not know is an error.
 const quantity = new Proxy(Object.fromEntries(page.quantities.map((q) => [q.name, q])), {
@@ -13,6 +13,15 @@ const quantity = new Proxy(Object.fromEntries(page.quantities.map((q) => [q.name
 const [FIRST, SECOND] = page.objectives;
 const PAPERS_OWN = FIRST === "height_m" && SECOND === "energy_j";
 
+function bytesOf(base64) {
+  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(base64); // of newer browsers
+  const letters = atob(base64), bytes = new Uint8Array(letters.length);
+  for (let k = 0; k < bytes.length; k += 1) bytes[k] = letters.charCodeAt(k);
+  return bytes;
+}
+
+function inflated(bytes) { return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))); }
+
 function byId(id) { return document.getElementById(id); }
 
 function make(tag, attributes = {}, ...children) {
@@ -23,6 +32,15 @@ function make(tag, attributes = {}, ...children) {
   node.append(...children);
   return node;
 }
+
+// A button, and what a click on it does.
+function buttonOf(words, act, attributes = {}) {
+  const node = make("button", { type: "button", ...attributes }, words);
+  node.addEventListener("click", act);
+  return node;
+}
+
+function small(words) { return make("p", { class: "small" }, words); }
 
 function draw(tag, attributes = {}, ...children) {
   const node = document.createElementNS(SVG, tag);

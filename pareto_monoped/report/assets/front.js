@@ -21,12 +21,6 @@ function shownColumn(study, name, rows) {
   return rows.map((row) => (column[row] === null || Number.isNaN(column[row]) ? null : column[row] * scale));
 }
 
-function rowsWith(study, letter, without) {
-  const letters = page.studies[study].trials.state, result = [];
-  for (let row = 0; row < letters.length; row += 1) if (letters[row] === letter && !without.has(row)) result.push(row);
-  return result;
-}
-
 // The middle part of the trials, without the few that would stretch an axis.
 function mostOf(study, name) {
   const sorted = Float64Array.from(shownColumn(study, name, feasibleRows(page.studies[study])).filter((v) => v !== null)).sort();
@@ -105,7 +99,7 @@ function cloudLayers(study) {
   const list = [];
   for (const [letter, wanted, name] of [["f", state.layers.cloud, "dominated"], ["i", state.layers.infeasible, "infeasible"]]) {
     if (!wanted) continue;
-    const rows = rowsWith(study, letter, onFront);
+    const rows = rowsIn(card, letter).filter((row) => !onFront.has(row));
     const opacity = ranged ? rows.map((row) => (inRanges(study, row) ? 0.8 : 0.06)) : tint ? 0.6 : 0.35;
     const marker = letter === "f"
       ? { size: 4, color: page.studies.length > 1 ? studyColour(study) : colour("cloud"), opacity, ...(tint ? { ramp: rangeOver(tint) } : {}) }

@@ -16,7 +16,7 @@ function drawTimes() {
   if (!j) {
     if (box.data) Plotly.purge(box);
     box.removeAttribute("role");
-    box.replaceChildren(make("p", { class: "small" }, noJump(chosen)));
+    box.replaceChildren(small(noJump(chosen)));
     return;
   }
   if (!box.data) box.replaceChildren(times.cursor);
@@ -41,10 +41,10 @@ function drawTimes() {
   ].map((cell) => {
     const y = padded(extent([...cell.series.flatMap((s) => s.y), ...(cell.lines ?? []).map((line) => line.y)]));
     const lift = { x: [j.lift_off_s, j.lift_off_s], y, colour: colour("faint"), thick: 1 };
-    return { ...cell, x: [0, endTime()], y, series: [...cell.series, lift] };
+    return { ...cell, x: [0, player.end()], y, series: [...cell.series, lift] };
   });
   times.places = subplots(box, cells, { height: 132 });
-  describe(box, `${cells.map(({ title }) => title).join("; ")}; over ${round(endTime(), 2)} s`);
+  describe(box, `${cells.map(({ title }) => title).join("; ")}; over ${round(player.end(), 2)} s`);
   moveCursors();
 }
 
@@ -152,9 +152,4 @@ function startLines() {
   again = lazily("time-charts", drawTimes);
   const alongAgain = lazily("along-charts", drawAlong);
   on("view", alongAgain);
-  for (const [id, redraw] of [["time-charts", again], ["along-charts", alongAgain]]) {
-    const node = byId(id);
-    let width = node.clientWidth;
-    new ResizeObserver(() => { if (node.clientWidth !== width) { width = node.clientWidth; redraw(); } }).observe(node);
-  }
 }

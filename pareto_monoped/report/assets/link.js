@@ -28,6 +28,7 @@ const WRITERS = {
   space: (s) => [s.axes.space ? "1" : ""],
   zoom: (s) => (s.view ? [[...s.view.x, ...s.view.y].map(numberText).join(":")] : []),
   layers: (s) => [Object.keys(s.layers).filter((key) => s.layers[key]).join(",")],
+  parallel: (s) => (s.parallel === null ? [] : [s.parallel.join(",")]),
   rows: (s) => [s.table.rows],
   columns: (s) => (s.table.columns === null ? [] : [s.table.columns.join(",")]),
   sort: (s) => [`${s.table.down ? "-" : ""}${s.table.sort}`],
@@ -74,6 +75,7 @@ const READERS = {
     const wanted = text.split(",").filter(Boolean).map((key) => oneOf(key, Object.keys(s.layers)));
     for (const key of Object.keys(s.layers)) s.layers[key] = wanted.includes(key);
   },
+  parallel: (s, [text]) => { s.parallel = [...new Set(text.split(",").filter(Boolean).map(known))]; },
   rows: (s, [text]) => { s.table.rows = oneOf(text, ["front", "all"]); },
   columns: (s, [text]) => { s.table.columns = text.split(",").filter(Boolean).map(known); },
   sort: (s, [text]) => { Object.assign(s.table, { down: text.startsWith("-"), sort: known(text.replace(/^-/, "")) }); },
@@ -160,7 +162,7 @@ function goTo(at) {
 function restore(next) {
   const other = next.study !== state.study;
   Object.assign(state, next);
-  for (const event of ["conditions", "axes", "layers", "table", "shortlist"]) tell(event, { final: true });
+  for (const event of ["conditions", "axes", "layers", "table", "parallel", "shortlist"]) tell(event, { final: true });
   tell("selection", { byUser: false, other });
   tell("view");
 }

@@ -10,7 +10,6 @@ function start() {
   startViewer();
   startShortlist();
   startComparison();
-  startPrint();
   tell("selection", { byUser: false, other: false });
   startFront();
   describeFront();

@@ -1,30 +1,36 @@
-// Parallel coordinates of variables and objectives, drawn on a canvas; conditions and selection are the page's own.
+// Parallel coordinates of any measures and variables, drawn on a canvas; conditions and selection are the page's own.
 
+// The axes of a new page.
 const AXES = [...page.variables.map((v) => v.name), ...(page.goals.includes("mass_kg") ? [] : ["mass_kg"]), ...page.goals];
 // As many lines as can be told apart; more become a block of one colour.
 const MOST_OF_FRONT = 260, MOST_OTHERS = 260;
-const LINE_PX = 8; // a click this near to a line means it
+const LINE_PX = 8; // a pointer this near to a line means it
+const AXIS_PX = 76; // the least room of an axis and its name
 const SOFT_SHARE = 1e-3; // of the top of an axis with zeros: below it the axis is linear
-const par = { node: byId("parallel-chart"), top: 46, bottom: 24, left: 46, right: 50, scales: {}, front: [], others: [] };
+const par = { node: byId("parallel-chart"), top: 46, bottom: 24, left: 52, right: 62, names: [], xs: [], scales: {}, front: [], others: [], moving: null };
 
-function axisX(i) { return par.left + i / (AXES.length - 1) * (par.width - par.left - par.right); }
+// The axes from left to right; while one is dragged, as they would then be.
+function axesShown() { return par.moving ?? state.parallel ?? AXES; }
 
-function axisY(name, value) { return par.height - par.bottom - Math.min(Math.max(par.scales[name].share(value), 0), 1) * (par.height - par.top - par.bottom); }
+function axisX(i) { return par.left + i / Math.max(par.names.length - 1, 1) * (par.width - par.left - par.right); }
+
+function axisY(name, value) { return par.height - par.bottom - Math.min(Math.max(axisScale(name).share(value), 0), 1) * (par.height - par.top - par.bottom); }
 
 function valueAtY(name, y) {
   const share = (par.height - par.bottom - y) / (par.height - par.top - par.bottom);
-  return par.scales[name].value(Math.min(Math.max(share, 0), 1));
+  return axisScale(name).value(Math.min(Math.max(share, 0), 1));
 }
 
-// Each axis from bound to bound, or over all feasible trials; logarithmic where most of it would be empty.
-function prepareScales() {
-  for (const name of AXES) {
-    const values = page.studies.flatMap((s) => feasibleRows(s).map((row) => s.trials.columns[name][row]));
+// An axis from bound to bound, or over all feasible trials; logarithmic where most of it would be empty.
+function axisScale(name) {
+  if (!par.scales[name]) {
+    const values = page.studies.flatMap((study, i) => { const column = columnOf(i, name); return feasibleRows(study).map((row) => column[row]); });
     const ends = page.studies.flatMap((s) => s.bounds[name] ?? []);
     const [low, high] = extent(ends.length ? ends : values);
     const kind = low === high ? "linear" : kindFor([...values, low, high]);
     par.scales[name] = scaleOf(low === high ? padded([low, high]) : [low, high], kind, high * SOFT_SHARE);
   }
+  return par.scales[name];
 }
 
 function thinnedTo(list, most) {
@@ -47,34 +53,34 @@ function linesToDraw() {
 }
 
 function drawParallel() {
+  par.names = axesShown();
+  par.node.style.minWidth = `${AXIS_PX * par.names.length}px`;
   par.width = Math.max(par.node.clientWidth, 300);
   par.height = par.node.clientHeight;
   const scale = paperScale() ?? (window.devicePixelRatio || 1);
   par.canvas.width = par.width * scale;
   par.canvas.height = par.height * scale;
-  par.xs = AXES.map((_, i) => axisX(i));
-  linesToDraw();
+  par.xs = par.names.map((_, i) => axisX(i));
+  drawHeads();
   drawParallelAxes();
   drawLines();
   drawSelected();
-  describeRanges();
+  point(null);
 }
 
-function polyline(context, [study, row]) {
-  const { columns } = page.studies[study].trials;
-  AXES.forEach((name, i) => {
-    const y = axisY(name, columns[name][row]);
-    if (i) context.lineTo(par.xs[i], y);
-    else context.moveTo(par.xs[i], y);
-  });
+// The points of a design's line; an axis whose measure it lacks is left out.
+function pointsOf([study, row]) {
+  return par.names.map((name, i) => [par.xs[i], axisY(name, columnOf(study, name)[row])]).filter(([, y]) => !Number.isNaN(y));
 }
+
+function pathOf(line) { return line ? `M${pointsOf(line).map((at) => at.map((v) => v.toFixed(1)).join(" ")).join("L")}` : ""; }
 
 function stroke(context, list, tint, width, alpha) {
   Object.assign(context, { lineWidth: width, globalAlpha: alpha });
   for (const line of list) {
     context.strokeStyle = tint(line);
     context.beginPath();
-    polyline(context, line);
+    pointsOf(line).forEach(([x, y]) => context.lineTo(x, y));
     context.stroke();
   }
 }
@@ -103,21 +109,61 @@ function drawLines() {
 
 // The selected design's line has a layer of its own, so that the many below are not drawn again.
 function drawSelected() {
-  if (!par.xs) return;
-  const { columns } = current().trials;
-  const d = state.row === null ? "" : `M${AXES.map((name, i) => `${par.xs[i].toFixed(1)} ${axisY(name, columns[name][state.row] ?? par.scales[name].range[0]).toFixed(1)}`).join("L")}`;
-  for (const path of par.selected.children) path.setAttribute("d", d);
+  const d = state.row === null || !par.names.length ? "" : pathOf([state.study, state.row]);
+  for (const path of par.selected.children) if (path !== par.pointed) path.setAttribute("d", d);
+}
+
+// The line under the pointer, with words about its design; null: none.
+function point(line, at) {
+  par.pointed.setAttribute("d", pathOf(line));
+  if (line) showTip(par.tip, hoverText(...line), at, par.width);
+  else par.tip.hidden = true;
+}
+
+// Names over the axes are buttons, so that the keyboard can move them, too; one that is dragged stays the same node.
+function drawHeads() {
+  if (!par.moving) {
+    const focused = document.activeElement.dataset.head;
+    par.heads.replaceChildren(...par.names.map(headOf));
+    if (focused) par.heads.querySelector(`[data-head="${focused}"]`)?.focus({ preventScroll: true });
+  }
+  const width = Math.min((par.width - par.left - par.right) / Math.max(par.names.length - 1, 1), 120);
+  for (const head of par.heads.children) Object.assign(head.style, { left: `${par.xs[par.names.indexOf(head.dataset.head)]}px`, width: `${width}px` });
+}
+
+function headOf(name, i) {
+  const { label, unit } = quantity[name], words = axisScale(name).kind === "linear" ? unit : `${unit}, log`;
+  const head = make("button", { type: "button", "data-head": name, title: "Drag it, or move it with the arrow keys", "aria-label": `${label} ${words}, axis ${i + 1} of ${par.names.length}: the arrow keys move it` }, make("b", {}, label), ` ${words}`);
+  const movedTo = (to) => par.names.filter((one) => one !== name).toSpliced(Math.max(to, 0), 0, name);
+  head.addEventListener("keydown", (event) => {
+    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    setParallel(movedTo(par.names.indexOf(name) + step));
+  });
+  head.addEventListener("pointerdown", (event) => head.setPointerCapture(event.pointerId));
+  head.addEventListener("pointermove", (event) => {
+    if (!head.hasPointerCapture(event.pointerId)) return;
+    const [x] = pointerIn(par.node, event), away = par.xs.map((own) => Math.abs(own - x));
+    const to = away.indexOf(Math.min(...away));
+    if (to === par.names.indexOf(name)) return;
+    par.moving = movedTo(to);
+    drawParallel();
+  });
+  head.addEventListener("lostpointercapture", () => {
+    const names = par.moving;
+    par.moving = null;
+    if (names) setParallel(names);
+  });
+  return head;
 }
 
 function drawParallelAxes() {
-  par.svg.replaceChildren(...AXES.map((name, i) => {
-    const q = quantity[name], x = par.xs[i], scale = par.scales[name], [low, high] = scale.range;
+  par.svg.replaceChildren(...par.names.map((name, i) => {
+    const q = quantity[name], x = par.xs[i], scale = axisScale(name), [low, high] = scale.range;
     const group = draw("g", { class: "axis", "data-axis": name, "data-kind": scale.kind, "data-soft": high * SOFT_SHARE });
     group.append(draw("rect", { x: x - 20, y: par.top - 8, width: 40, height: par.height - par.top - par.bottom + 16, fill: "transparent" }));
     group.append(draw("line", { x1: x, x2: x, y1: par.top, y2: par.height - par.bottom, stroke: "var(--soft)" }));
-    const words = q.label.split(" ");
-    const half = words.length > 1 ? [words[0], words.slice(1).join(" ")] : ["", words[0]];
-    group.append(text(x, 11, half[0], "middle", "strong"), text(x, 23, half[1], "middle", "strong"), text(x, 35, scale.kind === "linear" ? q.unit : `${q.unit}, log`, "middle"));
     // Ticks are round numbers in the unit shown.
     const inUnits = scaleOf([low * q.scale, high * q.scale], scale.kind, high * q.scale * SOFT_SHARE);
     for (const value of inUnits.ticks(5)) {
@@ -146,44 +192,24 @@ function describeRanges() {
     all += feasibleRows(study).filter((row) => inRanges(i, row)).length;
   }
   note.textContent = `Within the conditions: ${onFront} designs on the front, ${all} of ${total} feasible trials on this page. ${words} `;
-  const clear = make("button", { type: "button", id: "clear-ranges" }, "Drop all conditions");
-  clear.addEventListener("click", clearConditions);
-  note.append(clear);
-}
-
-function fillFields() {
-  for (const name of AXES) {
-    par.fields[name].forEach((field, side) => {
-      const end = state.ranges[name]?.[side] ?? null;
-      if (document.activeElement !== field) field.value = end === null ? "" : Number((end * quantity[name].scale).toPrecision(9));
-    });
-  }
+  note.append(buttonOf("Drop all conditions", clearConditions, { id: "clear-ranges" }));
 }
 
 function buildFields() {
-  par.fields = {};
-  for (const name of AXES) {
-    const q = quantity[name];
-    par.fields[name] = ["from", "to"].map((word) => {
-      const input = make("input", { type: "number", step: "any", "aria-label": `${q.label} ${word}, ${q.unit}`, placeholder: word, "data-range": `${name}-${word}` });
-      input.addEventListener("change", () => {
-        const typed = par.fields[name].map((field) => (Number.isFinite(field.valueAsNumber) ? field.valueAsNumber / q.scale : null));
-        setRange(name, typed.includes(null) || typed[0] <= typed[1] ? typed : typed.reverse());
-      });
-      return input;
-    });
-    byId("brush-fields").append(make("div", {}, `${q.label}, ${q.unit}`, make("span", {}, par.fields[name][0], " ", par.fields[name][1])));
-  }
+  byId("brush-fields").replaceChildren(...axesShown().map((name) => {
+    const [from, to] = rangeFields(name, (word) => ({ "aria-label": `${quantity[name].label} ${word}, ${quantity[name].unit}`, "data-range": `${name}-${word}` }));
+    return make("div", {}, titled(name), make("span", {}, from, " ", to));
+  }));
+  fillRanges();
 }
 
 function nearestLine(x, y) {
   let best = null, least = LINE_PX;
   const left = par.xs.findLastIndex((at) => at <= x);
-  if (left < 0 || left >= AXES.length - 1) return null;
+  if (left < 0 || left >= par.names.length - 1) return null;
   const share = (x - par.xs[left]) / (par.xs[left + 1] - par.xs[left]);
   for (const line of [...par.front, ...par.others]) {
-    const { columns } = page.studies[line[0]].trials;
-    const a = axisY(AXES[left], columns[AXES[left]][line[1]]), b = axisY(AXES[left + 1], columns[AXES[left + 1]][line[1]]);
+    const [a, b] = [left, left + 1].map((i) => axisY(par.names[i], columnOf(line[0], par.names[i])[line[1]]));
     const off = Math.abs(a + share * (b - a) - y);
     if (off < least) { least = off; best = line; }
   }
@@ -193,47 +219,45 @@ function nearestLine(x, y) {
 function startParallel() {
   par.canvas = make("canvas", { role: "img", "aria-label": "Parallel coordinates: one line per design across its variables and measures" });
   par.svg = draw("svg", { "aria-hidden": "true" });
+  par.pointed = draw("path", { stroke: "var(--ink)", "stroke-width": 2 });
   par.selected = draw("svg", { "aria-hidden": "true", fill: "none", "pointer-events": "none" },
-    draw("path", { stroke: "var(--card)", "stroke-width": 6 }), draw("path", { stroke: "var(--select)", "stroke-width": 3, id: "parallel-selected" }));
-  par.node.append(par.canvas, par.selected, par.svg);
-  prepareScales();
+    draw("path", { stroke: "var(--card)", "stroke-width": 6 }), draw("path", { stroke: "var(--select)", "stroke-width": 3, id: "parallel-selected" }), par.pointed);
+  par.heads = make("div", { class: "heads", role: "group", "aria-label": "Order of the axes" });
+  par.tip = make("div", { class: "tip", hidden: "" });
+  par.node.append(par.canvas, par.selected, par.svg, par.heads, par.tip);
   buildFields();
-  fillFields();
+  for (const name of new Set([...AXES, ...axisNames()])) byId("parallel-axes").append(switchOf({ "data-parallel": name }, "", titled(name), "parallel", () => axesShown().includes(name), (shown) => setParallel([...axesShown().filter((one) => one !== name), ...(shown ? [name] : [])])));
   listenToAxes();
   on("selection", drawSelected);
-  on("conditions", ({ final }) => {
-    if (final) fillFields();
-    if (!final && par.xs) drawParallelAxes();
-  });
+  on("conditions", ({ final }) => { if (!final) drawParallelAxes(); });
   const redraw = lazily("parallel-chart", drawParallel);
-  on("view", () => { linesToDraw(); describeRanges(); redraw(); });
-  linesToDraw();
-  describeRanges();
-  new ResizeObserver(() => { if (par.xs && par.width !== Math.max(par.node.clientWidth, 300)) redraw(); }).observe(par.node);
+  const follow = () => { linesToDraw(); describeRanges(); redraw(); };
+  on("view", follow);
+  on("parallel", () => { buildFields(); redraw(); });
+  follow();
 }
 
 // A mouse draws a range on an axis; a finger scrolls, and types its ranges.
 function listenToAxes() {
   let drag = null;
-  const at = (event) => {
-    const box = par.node.getBoundingClientRect();
-    return [event.clientX - box.left, event.clientY - box.top];
-  };
   par.node.addEventListener("pointerdown", (event) => {
-    const [x, y] = at(event);
+    if (event.target.closest("button")) return;
+    const [x, y] = pointerIn(par.node, event);
     const i = par.xs.findIndex((value) => Math.abs(value - x) < 20);
-    drag = { name: i >= 0 ? AXES[i] : null, x, y, moved: false };
+    drag = { name: par.names[i] ?? null, x, y, moved: false };
+    point(null);
     if (drag.name && event.pointerType !== "touch") par.node.setPointerCapture(event.pointerId);
   });
   par.node.addEventListener("pointermove", (event) => {
+    const [x, y] = pointerIn(par.node, event);
+    if (!drag && event.pointerType !== "touch") point(event.target.closest("button") ? null : nearestLine(x, y), [x, y]);
     if (!drag?.name || event.pointerType === "touch") return;
-    const [, y] = at(event);
     if (Math.abs(y - drag.y) > 4) drag.moved = true;
     if (drag.moved) setRange(drag.name, [drag.y, y].map((one) => Number(valueAtY(drag.name, one).toPrecision(5))).sort((a, b) => a - b), false);
   });
   par.node.addEventListener("pointerup", (event) => {
     if (!drag) return;
-    const [x, y] = at(event);
+    const [x, y] = pointerIn(par.node, event);
     if (drag.moved) setRange(drag.name, state.ranges[drag.name]);
     else if (drag.name && state.ranges[drag.name]) setRange(drag.name, null);
     else {
@@ -242,5 +266,6 @@ function listenToAxes() {
     }
     drag = null;
   });
+  par.node.addEventListener("pointerleave", () => point(null));
   par.node.addEventListener("pointercancel", () => { drag = null; });
 }

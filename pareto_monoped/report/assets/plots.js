@@ -2,10 +2,11 @@
 
 const DASHES = { solid: [], dash: [7, 4], dot: [1.5, 3.5], dashdot: [7, 3, 1.5, 3], longdash: [12, 4], longdashdot: [12, 3, 1.5, 3] };
 
-// Draws a chart when it comes near the view; later changes wait until it is there again. Returns what asks for a redraw.
+// Draws a chart when it comes near the view; later changes wait until it is there again. A change of its width is one.
+// Returns what asks for a redraw.
 function lazily(id, render) {
   const node = byId(id);
-  let near = false, stale = true;
+  let near = false, stale = true, width = null;
   const now = () => { stale = false; render(node); };
   const again = () => { stale = true; if (near || paperScale()) now(); };
   charts.push(again);
@@ -13,6 +14,11 @@ function lazily(id, render) {
     near = entries.at(-1).isIntersecting;
     if (near && stale) now();
   }, { rootMargin: "300px" }).observe(node);
+  new ResizeObserver(() => {
+    const before = width;
+    width = node.clientWidth;
+    if (before !== null && width !== before) again();
+  }).observe(node);
   window.addEventListener("beforeprint", () => { if (stale) now(); });
   return again;
 }
@@ -37,16 +43,6 @@ function legend(node, layers) {
   }));
   if (old) old.replaceWith(list);
   else node.after(list);
-}
-
-// A small mark in SVG, as the canvas draws it.
-function markOf(kind, x, y, tint) {
-  const d = {
-    square: "M-4 -4H4V4H-4Z", diamond: "M0 -5L5 0L0 5L-5 0Z", "triangle-up": "M0 -5L5 4H-5Z", "triangle-down": "M0 5L5 -4H-5Z",
-    pentagon: "M0 -5L5 -1L3 4H-3L-5 -1Z",
-  }[kind.replace("-open", "")] ?? "M-4 0A4 4 0 1 0 4 0A4 4 0 1 0 -4 0Z";
-  const open = kind.endsWith("-open");
-  return draw("path", { d, transform: `translate(${x} ${y})`, fill: open ? "none" : tint, stroke: open ? tint : "none", "stroke-width": 1.6 });
 }
 
 const SPOTS = [[1, 0], [-1, 0], [0, -1], [0, 1], [0.75, -0.75], [-0.75, -0.75], [0.75, 0.75], [-0.75, 0.75]];

@@ -2,13 +2,9 @@
 
 const unfolded = [];
 
-function startPrint() {
-  window.addEventListener("beforeprint", () => {
-    for (const details of document.querySelectorAll("details:not([open])")) {
-      details.open = true;
-      unfolded.push(details);
-    }
-    solid.draw();
-  });
-  window.addEventListener("afterprint", () => { for (const details of unfolded.splice(0)) details.open = false; });
-}
+window.addEventListener("beforeprint", () => {
+  unfolded.push(...document.querySelectorAll("details:not([open])"));
+  for (const details of unfolded) details.open = true;
+  solid.draw();
+});
+window.addEventListener("afterprint", () => { for (const details of unfolded.splice(0)) details.open = false; });

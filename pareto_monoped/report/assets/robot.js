@@ -1,12 +1,58 @@
-// Robots to scale in the plane of their leg, and the player of the selected design's jump.
+// Robots to scale in the plane of their leg, and players of their jumps.
 
 const stage = byId("stage");
-const player = { time: 0, playing: false, last: 0, jump: null, request: 0 };
 const PIN_RADIUS_M = 0.012; // of the dot that marks the knee axis
 const STOP_RADIUS_M = 0.085, BUMPER_RADIUS_M = 0.011; // of the arcs that mark the joints' ranges, and of their ends
 const FORCE_M_PER_N = 1 / 800; // length of the arrow of the floor's force
 const DEGREES = 180 / Math.PI;
 let robot = null;
+
+// Plays time by a button, a slider and a choice of speeds with these ids; end() is its end, moved() shows a moment.
+class Player {
+  constructor([play, scrub, speed], words, end, moved) {
+    Object.assign(this, { play: byId(play), scrub: byId(scrub), speed: byId(speed), words, end, moved, time: 0, playing: false });
+    this.play.addEventListener("click", () => this.run(!this.playing));
+    this.scrub.addEventListener("input", () => { this.run(false); this.set(this.scrub.value / 1000 * end()); });
+  }
+
+  // To the start, at rest; without a jump nothing can be played.
+  reset(able) {
+    this.run(false);
+    this.time = 0;
+    for (const control of [this.play, this.scrub, this.speed]) control.disabled = !able;
+  }
+
+  set(time) {
+    const end = this.end();
+    this.time = Math.min(Math.max(time, 0), end);
+    this.scrub.value = end ? Math.round(1000 * this.time / end) : 0;
+    this.scrub.setAttribute("aria-valuetext", `${round(this.time)} s of ${round(end)} s`);
+    this.moved();
+  }
+
+  run(playing) {
+    this.playing = playing && this.end() > 0;
+    this.play.textContent = this.playing ? "Pause" : this.words;
+    cancelAnimationFrame(this.request);
+    if (!this.playing) return;
+    if (this.time >= this.end()) this.time = 0;
+    let last = performance.now();
+    const step = (now) => {
+      this.set(this.time + (now - last) / 1000 * Number(this.speed.value));
+      last = now;
+      if (this.time >= this.end()) this.run(false);
+      else this.request = requestAnimationFrame(step);
+    };
+    this.request = requestAnimationFrame(step);
+  }
+}
+
+// The player of the selected design's jump.
+const player = new Player(["play", "scrub", "speed"], "Play", () => player.jump?.time_s.at(-1) ?? 0, () => {
+  if (robot) robot.pose(player.jump, player.time);
+  showLoads();
+  tell("time");
+});
 
 // One scale for all designs: the highest jump of all fronts and cases fits.
 const STAGE_TOP = (() => {
@@ -127,17 +173,6 @@ function mixed(jump, name, { i, f }) {
   return values.length > 1 ? values[i] + (values[i + 1] - values[i]) * f : values[0];
 }
 
-function endTime() { return player.jump ? player.jump.time_s.at(-1) : 0; }
-
-function setTime(time) {
-  player.time = Math.min(Math.max(time, 0), endTime());
-  byId("scrub").value = endTime() ? Math.round(1000 * player.time / endTime()) : 0;
-  byId("scrub").setAttribute("aria-valuetext", `${round(player.time)} s of ${round(endTime())} s`);
-  if (robot) robot.pose(player.jump, player.time);
-  showLoads();
-  tell("time");
-}
-
 // What acts at the moment that the picture shows.
 function showLoads() {
   const box = byId("loads"), { jump } = player;
@@ -155,40 +190,18 @@ function showLoads() {
   box.textContent = words.join("; ");
 }
 
-function setPlaying(playing) {
-  player.playing = playing && player.jump !== null;
-  byId("play").textContent = player.playing ? "Pause" : "Play";
-  byId("play").setAttribute("aria-label", player.playing ? "Pause the jump" : "Play the jump");
-  cancelAnimationFrame(player.request);
-  if (!player.playing) return;
-  if (player.time >= endTime()) player.time = 0;
-  player.last = performance.now();
-  const step = (now) => {
-    if (!player.playing) return;
-    setTime(player.time + (now - player.last) / 1000 * Number(byId("speed").value));
-    player.last = now;
-    if (player.time >= endTime()) setPlaying(false);
-    else player.request = requestAnimationFrame(step);
-  };
-  player.request = requestAnimationFrame(step);
-}
-
 function startRobot() {
-  byId("play").addEventListener("click", () => setPlaying(!player.playing));
-  byId("scrub").addEventListener("input", () => { setPlaying(false); setTime(byId("scrub").value / 1000 * endTime()); });
   on("selection", (how) => {
-    setPlaying(false);
     const chosen = subject();
     player.jump = jumpOf(chosen);
-    player.time = 0;
-    for (const id of ["play", "scrub", "speed"]) byId(id).disabled = !player.jump;
+    player.reset(player.jump !== null);
     if (chosen) buildStage(chosen);
     else stage.replaceChildren();
     showLoads();
     if (!player.jump) return;
     // At rest the picture shows the lift-off; a click plays the jump from its start.
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    if (how.byUser && !still) setPlaying(true);
-    else setTime(player.jump.lift_off_s);
+    if (how.byUser && !still) player.run(true);
+    else player.set(player.jump.lift_off_s);
   });
 }

@@ -60,8 +60,3 @@ function rampColour(shade) {
 }
 
 const RAMP_TEXT = Array.from({ length: SHADES }, (_, shade) => `rgb(${rampColour(shade).join(" ")})`);
-
-function rgbOf(text) {
-  const hex = text.replace("#", "");
-  return [0, 2, 4].map((i) => parseInt(hex.slice(i, i + 2), 16));
-}

@@ -3,7 +3,7 @@
 function drawConvergence(node) {
   const comparison = page.comparison;
   if (!page.studies.some((study) => study.history.evaluations.length)) {
-    node.replaceChildren(make("p", { class: "small" }, "No generation is complete yet, so there is no convergence to show."));
+    node.replaceChildren(small("No generation is complete yet, so there is no convergence to show."));
     node.style.height = "auto";
     return;
   }

@@ -5,99 +5,56 @@ function nameOf(study, row) {
   return `trial ${trials.trial[row]}${page.studies.length > 1 ? `, ${label}` : ""}`;
 }
 
-function keepButton(study, row) {
+function keepButton(study, row, [out, none, hold] = ["Remove from shortlist", "Shortlist is full", "Keep for comparison"]) {
   const kept = shortlisted(study, row) >= 0;
   const full = !kept && state.shortlist.length >= SHORTLIST_MOST;
   // What is heard begins with what is seen.
-  const words = kept ? "Remove from shortlist" : full ? "Shortlist is full" : "Keep for comparison";
-  const button = make("button", { type: "button", "aria-pressed": kept, disabled: full ? "" : null, "aria-label": `${words}: ${nameOf(study, row)}` }, words);
-  button.addEventListener("click", () => {
-    if (kept) drop(study, row);
-    else keep(study, row);
-  });
-  return button;
+  const words = kept ? out : full ? none : hold;
+  const act = () => (kept ? drop : keep)(study, row);
+  return buttonOf(words, act, { class: "hold", "data-kept": `hold ${study} ${row}`, "aria-pressed": kept, disabled: full ? "" : null, "aria-label": `${words}: ${nameOf(study, row)}` });
 }
 
-// The button beside the selected design; the same node stays in place, so that the keyboard does not lose it.
+// Makes the content of an element again, and gives the focus back to what stands for the same.
+function renewed(box, nodes) {
+  const active = box.contains(document.activeElement) && document.activeElement.dataset.kept;
+  box.replaceChildren(...nodes);
+  if (active) (box.querySelector(`[data-kept="${active}"]`) ?? box.querySelector("button"))?.focus();
+}
+
+// The button beside the selected design.
 function showKeep() {
-  const box = byId("keep");
-  const focused = box.contains(document.activeElement);
-  box.replaceChildren();
-  if (state.row === null) return;
-  box.append(keepButton(state.study, state.row));
-  const count = state.shortlist.length;
-  if (count) box.append(" ", make("a", { href: "#shortlist" }, `${count} on the shortlist`));
-  if (focused) box.querySelector("button").focus();
+  const count = state.shortlist.length, link = count ? [" ", make("a", { href: "#shortlist" }, `${count} on the shortlist`)] : [];
+  renewed(byId("keep"), state.row === null ? [] : [keepButton(state.study, state.row), ...link]);
 }
 
 // Quite different designs that cost about as much; the page has them for the designs that it points out.
-function showAlternatives() {
-  const box = byId("alternatives");
-  box.replaceChildren();
-  const chosen = subject();
-  const pick = chosen?.kind === "trial" ? chosen.study.picks.find((p) => p.row === chosen.row && p.alternatives.length) : null;
-  if (!pick) {
-    const known = current().picks.filter((p) => p.alternatives.length);
-    if (!known.length) return;
-    box.append(make("p", { class: "small" }, "Alternatives are listed for the designs that this page points out: "));
-    for (const one of known) {
-      const button = make("button", { type: "button" }, one.name);
-      button.addEventListener("click", () => select(state.study, one.row));
-      box.lastChild.append(button, " ");
-    }
-    return;
-  }
-  box.append(make("p", { class: "small" }, `Quite different designs that cost about as much as ${nameOf(state.study, chosen.row)}, the most different first:`));
+function alternatives() {
+  const { picks, trials } = current(), known = picks.filter((p) => p.alternatives.length);
+  const pick = known.find((p) => p.row === state.row);
+  if (!known.length) return [];
+  if (!pick) return [make("p", { class: "small" }, "Alternatives are listed for the designs that this page points out: ", ...known.flatMap((one) => [buttonOf(one.name, () => select(state.study, one.row)), " "]))];
   const rows = pick.alternatives.map((one) => {
-    const show = make("button", { type: "button", "aria-label": `Show ${nameOf(state.study, one.row)}` }, `trial ${chosen.study.trials.trial[one.row]}`);
-    show.addEventListener("click", () => select(state.study, one.row));
-    const hold = make("button", { type: "button", class: "hold" });
-    const label = () => {
-      const kept = shortlisted(state.study, one.row) >= 0;
-      hold.textContent = kept ? "Kept" : "Keep";
-      hold.setAttribute("aria-pressed", kept);
-      hold.setAttribute("aria-label", `${kept ? "Remove" : "Keep"} ${nameOf(state.study, one.row)}`);
-      hold.disabled = !kept && state.shortlist.length >= SHORTLIST_MOST;
-    };
-    hold.addEventListener("click", () => {
-      if (shortlisted(state.study, one.row) >= 0) drop(state.study, one.row);
-      else keep(state.study, one.row);
-    });
-    alternativeLabels.push(label);
-    label();
+    const show = buttonOf(`trial ${trials.trial[one.row]}`, () => select(state.study, one.row), { "aria-label": `Show ${nameOf(state.study, one.row)}` });
     const price = `${one.price > 0 ? "+" : ""}${round(100 * one.price, 1)} %`;
-    return make("tr", {}, make("th", { scope: "row" }, show), make("td", { class: "n" }, price), make("td", {}, one.text + (one.audited ? "" : " (not audited)")), make("td", {}, hold));
+    return make("tr", {}, make("th", { scope: "row" }, show), make("td", { class: "n" }, price), make("td", {}, one.text + (one.audited ? "" : " (not audited)")), make("td", {}, keepButton(state.study, one.row, ["Kept", "Full", "Keep"])));
   });
   const head = make("thead", {}, make("tr", {}, ...["design", "price", "how it differs", "shortlist"].map((words, i) => make("th", { scope: "col", class: i === 1 ? "n" : null }, words))));
-  box.append(make("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Alternatives" }, make("table", { class: "alternatives" }, head, make("tbody", {}, ...rows))));
-}
-
-let alternativeLabels = [];
-
-function redrawAlternatives() {
-  alternativeLabels = [];
-  showAlternatives();
+  const table = make("table", { class: "alternatives" }, head, make("tbody", {}, ...rows));
+  return [small(`Quite different designs that cost about as much as ${nameOf(state.study, state.row)}, the most different first:`), make("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Alternatives" }, table)];
 }
 
 // One card per kept design: its name, a note, and a way out.
 function showKept() {
-  const box = byId("kept");
-  const active = document.activeElement?.dataset.kept;
   const list = state.shortlist.map(({ study, row, note }, i) => {
     const name = nameOf(study, row);
-    const show = make("button", { type: "button", "aria-label": `Show ${name}`, "data-kept": `show ${study} ${row}` }, name);
-    show.addEventListener("click", () => select(study, row));
+    const show = buttonOf(name, () => select(study, row), { "aria-label": `Show ${name}`, "data-kept": `show ${study} ${row}` });
     const words = make("input", { type: "text", maxlength: NOTE_MOST, placeholder: "note", value: note, "aria-label": `Note on ${name}`, "data-kept": `note ${study} ${row}` });
     words.addEventListener("input", () => setNote(study, row, words.value));
-    const out = make("button", { type: "button", "aria-label": `Remove ${name}`, "data-kept": `out ${study} ${row}` }, "Remove");
-    out.addEventListener("click", () => {
-      drop(study, row);
-      (byId("kept").querySelector("button") ?? byId("shortlist")).focus();
-    });
+    const leave = () => { drop(study, row); (byId("kept").querySelector("button") ?? byId("shortlist")).focus(); };
+    const out = buttonOf("Remove", leave, { "aria-label": `Remove ${name}`, "data-kept": `out ${study} ${row}` });
     return make("li", {}, make("span", { class: "swatch", style: `background: var(--c${i % 6})` }), show, words, out);
   });
-  box.replaceChildren(...list);
-  if (active) box.querySelector(`[data-kept="${active}"]`)?.focus();
+  renewed(byId("kept"), list);
   byId("shortlist-note").textContent = [
     `Keep two to ${SHORTLIST_MOST} designs to see them side by side: their variables, gearboxes, masses, loads, energies and jumps.`,
     "Keep one more design to compare.",
@@ -117,10 +74,10 @@ function exportCommand() {
 
 function startShortlist() {
   byId("shortlist").setAttribute("tabindex", "-1");
-  on("selection", () => { showKeep(); redrawAlternatives(); });
+  const follow = () => { showKeep(); renewed(byId("alternatives"), alternatives()); };
+  on("selection", follow);
   on("shortlist", () => {
-    showKeep();
-    for (const label of alternativeLabels) label();
+    follow();
     // A note that is being typed is on the page already.
     if (!document.activeElement?.dataset.kept?.startsWith("note") || !sameNotes()) showKept();
   });

@@ -11,6 +11,7 @@
 //                                 colour "auto": a third objective, else the study or the motor; size "": all alike
 //   state.view                    { x: [low, high], y: [low, high] } as shown where the front chart is zoomed, else null
 //   state.layers                  what the front chart shows: { front, cloud, infeasible, ... : boolean }
+//   state.parallel                names of the axes of the parallel coordinates from left to right, or null: the usual ones
 //   state.table                   { rows: "front" or "all", columns: names or null, sort: name, down: boolean, find }
 //
 // To read it
@@ -25,13 +26,13 @@
 // To change it
 //   select(study, row, byUser), selectCase(study, name), moveAlongFront(steps), moveToStudy(step)
 //   setRange(name, [least, most] or null, final), clearConditions(), showStudy(i, on), showMotor(kit, on), setBest(way)
-//   setAxes({...}), showLayer(key, on), setTable({...})
+//   setAxes({...}), showLayer(key, on), setTable({...}), setParallel(names)
 //   keep(study, row), drop(study, row), setNote(study, row, text)
 //   undo(), redo(), resetState()
 //
 // To hear of changes: on(event, listener)
 //   "selection" { byUser, other: another study }, "conditions" { final }, "axes", "layers", "shortlist", "table",
-//   "time" (of the player), and "view": what charts show has changed (conditions at their end, axes or layers).
+//   "parallel", "time" (of the player), and "view": what charts show has changed (conditions at their end, axes or layers).
 // Every change is kept in the fragment of the page's address and can be undone (link.js). A new field needs its default
 // in freshState() and its words in WRITERS and READERS there; parts then only listen to its event.
 
@@ -45,6 +46,7 @@ function freshState() {
     visible: new Set(page.studies.map((_, i) => i)), withoutMotors: new Set(), ranges: {}, best: "", shortlist: [], view: null,
     axes: { x: SECOND, y: FIRST, colour: "auto", size: "", logX: false, logY: false, space: false },
     layers: { front: true, cloud: true, infeasible: false, published: true, simulated: true, picks: true, floor: true, spread: true, robust: true, best: true },
+    parallel: null,
     table: { rows: "front", columns: null, sort: FIRST, down: false, find: "" },
   };
 }
@@ -61,7 +63,7 @@ function firstSelection() {
 }
 
 const state = freshState();
-const listeners = { selection: [], conditions: [], axes: [], layers: [], shortlist: [], table: [], time: [], view: [] };
+const listeners = { selection: [], conditions: [], axes: [], layers: [], shortlist: [], table: [], parallel: [], time: [], view: [] };
 
 function on(event, listener) { listeners[event].push(listener); }
 
@@ -155,6 +157,8 @@ function setAxes(axes) { Object.assign(state.axes, axes); state.view = null; cha
 function setView(view) { state.view = view; remember("view"); }
 
 function showLayer(key, shown) { state.layers[key] = shown; changed("layers"); }
+
+function setParallel(names) { state.parallel = names; changed("parallel", {}, "parallel"); }
 
 function setTable(table) { Object.assign(state.table, table); changed("table", {}, `table ${Object.keys(table)}`); }
 

@@ -29,7 +29,6 @@ function subplots(node, cells, { columns = 1, height = 130, key = null }) {
     const marked = cell.series.filter((one) => one.mark);
     if (marked.length) {
       const scale = paperScale() ?? (window.devicePixelRatio || 1), canvas = make("canvas", { width: Math.round(w * scale), height: Math.round(h * scale) }), context = softly(canvas);
-      context.scale(scale, scale);
       for (const one of marked) paintMarks(context, { px: one.x.map((v) => toX(v) - left), py: one.y.map((v) => (v === null ? NaN : toY(v) - top)), marker: { size: one.size ?? 6, symbol: one.mark, color: one.colours ?? one.colour, opacity: one.opacity ?? 1 } }, scale);
       layout.images.push({ source: canvas.toDataURL(), xref: `${xref} domain`, yref: `${yref} domain`, x: 0, y: 1, sizex: 1, sizey: 1, sizing: "stretch", layer: "above" });
     }

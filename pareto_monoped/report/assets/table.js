@@ -41,8 +41,8 @@ function drawTable() {
   const { sort, down } = state.table;
   const several = page.studies.length > 1;
   const heads = columns.map((name) => {
-    const button = make("button", { type: "button", "data-sort": name, title: `Sort by ${quantity[name].label}` }, `${titled(name)}${name === sort ? (down ? " ▼" : " ▲") : ""}`);
-    button.addEventListener("click", () => { setTable({ sort: name, down: name === state.table.sort ? !state.table.down : better(name) > 0 }); document.querySelector(`[data-sort="${name}"]`)?.focus(); });
+    const turn = () => { setTable({ sort: name, down: name === state.table.sort ? !state.table.down : better(name) > 0 }); document.querySelector(`[data-sort="${name}"]`)?.focus(); };
+    const button = buttonOf(`${titled(name)}${name === sort ? (down ? " ▼" : " ▲") : ""}`, turn, { "data-sort": name, title: `Sort by ${quantity[name].label}` });
     return make("th", { scope: "col", class: "n", "aria-sort": name === sort ? (down ? "descending" : "ascending") : "none" }, button);
   });
   byId("rows-head").replaceChildren(make("tr", {}, make("th", { scope: "col" }, "keep"), make("th", { scope: "col" }, "trial"), ...(several ? [make("th", { scope: "col" }, "study")] : []), ...(state.table.rows === "all" ? [make("th", { scope: "col" }, "state")] : []), ...heads));
@@ -78,8 +78,7 @@ function rowOf([study, row], at, columns) {
       byId("page-note").textContent = byId("rows-note").textContent = `The shortlist has room for ${SHORTLIST_MOST} designs: drop one first.`;
     }
   });
-  const button = make("button", { type: "button", "data-at": `s${at}`, "aria-label": `Select trial ${number}` }, number);
-  button.addEventListener("click", () => select(study, row));
+  const button = buttonOf(number, () => select(study, row), { "data-at": `s${at}`, "aria-label": `Select trial ${number}` });
   return make("tr", { "aria-rowindex": at + 2, "data-row": `${study}:${row}` }, make("td", {}, box), make("th", { scope: "row" }, button),
     ...(page.studies.length > 1 ? [make("td", {}, label)] : []), ...(state.table.rows === "all" ? [make("td", {}, STATES[trials.state[row]])] : []),
     ...columns.map((name) => make("td", { class: "n" }, shown(name, valueAt(study, name, row), false))));
@@ -127,10 +126,8 @@ function startTable() {
   const follow = () => {
     choice.value = state.table.rows;
     if (document.activeElement !== find) find.value = state.table.find;
-    const chosen = tableColumns();
-    for (const box of byId("rows-columns").querySelectorAll("input")) box.checked = chosen.includes(box.value);
   };
-  startColumns();
+  for (const name of knownNames()) byId("rows-columns").append(switchOf({ "data-column": name }, "", titled(name), "table", () => tableColumns().includes(name), (shown) => setTable({ columns: knownNames().filter((one) => (one === name ? shown : tableColumns().includes(one))) })));
   startCondition();
   follow();
   tab.frame.addEventListener("scroll", drawRows);
@@ -144,38 +141,16 @@ function startTable() {
   on("shortlist", markRows);
 }
 
-function startColumns() {
-  const box = byId("rows-columns");
-  for (const name of knownNames()) {
-    const input = make("input", { type: "checkbox", value: name, "data-column": name });
-    input.addEventListener("change", () => {
-      const chosen = tableColumns();
-      setTable({ columns: input.checked ? knownNames().filter((one) => one === name || chosen.includes(one)) : chosen.filter((one) => one !== name) });
-    });
-    box.append(make("label", {}, input, titled(name)));
-  }
-}
-
 // A condition on any measure, which the whole page then obeys.
 function startCondition() {
-  const choice = byId("rows-measure"), from = byId("rows-from"), to = byId("rows-to");
-  choice.append(...optionsOf(knownNames().filter((name) => page.axes.includes(name))));
-  const follow = () => {
-    const { scale } = quantity[choice.value];
-    [from, to].forEach((field, side) => {
-      const end = state.ranges[choice.value]?.[side] ?? null;
-      if (document.activeElement !== field) field.value = end === null ? "" : Number((end * scale).toPrecision(9));
-    });
+  const choice = byId("rows-measure");
+  choice.append(...optionsOf(axisNames()));
+  choice.closest(".filter").hidden = !choice.value;
+  const change = () => {
+    const fields = rangeFields(choice.value, (word) => ({ id: `rows-${word}` }));
+    byId("rows-range").replaceChildren(...fields.map((field) => make("label", {}, `${field.placeholder} `, field)));
+    fillRanges();
   };
-  if (!choice.value) { choice.closest(".filter").hidden = true; return; }
-  choice.addEventListener("change", follow);
-  for (const field of [from, to]) {
-    field.addEventListener("change", () => {
-      const { scale } = quantity[choice.value];
-      const typed = [from, to].map((one) => (Number.isFinite(one.valueAsNumber) ? one.valueAsNumber / scale : null));
-      setRange(choice.value, typed.includes(null) || typed[0] <= typed[1] ? typed : typed.reverse());
-    });
-  }
-  on("conditions", follow);
-  follow();
+  choice.addEventListener("change", change);
+  if (choice.value) change();
 }

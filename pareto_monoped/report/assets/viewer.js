@@ -8,8 +8,6 @@ const FRAGMENT = `#version 300 es
 precision highp float; in vec3 place; in vec3 shade; out vec4 pixel;
 void main() { vec3 n = normalize(cross(dFdx(place), dFdy(place))); float light = 0.45 + 0.55 * abs(dot(n, normalize(vec3(0.4, 0.6, 0.7)))); pixel = vec4(shade * light, 1.0); }`;
 
-function bytesOf(base64) { return Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)); }
-
 function program(gl) {
   const made = gl.createProgram();
   for (const [kind, source] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
@@ -26,25 +24,20 @@ const solid = { turn: -0.7, tilt: 0.35, zoom: 1, draw: () => {} };
 
 function showModel(box, model, name) {
   const canvas = make("canvas", { tabindex: 0, role: "img", "aria-label": `${name} in three dimensions; turn it with the arrow keys, plus and minus to zoom` });
-  box.append(canvas, make("p", { class: "small" }, `${model.note} Drag or use the arrow keys to turn it; + and -, or the wheel after a click on it, zoom.`));
+  box.append(canvas, small(`${model.note} Drag or use the arrow keys to turn it; + and -, or the wheel after a click on it, zoom.`));
   const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
   const made = gl && program(gl);
   if (!made) {
-    box.replaceChildren(make("p", { class: "small" }, "This browser shows no WebGL 2: open the exported GLB or STEP file in a CAD viewer."));
+    box.replaceChildren(small("This browser shows no WebGL 2: open the exported GLB or STEP file in a CAD viewer."));
     return;
   }
   const corners = new Int16Array(bytesOf(model.positions).buffer);
   const tints = bytesOf(model.colours);
-  const [low, high] = [[1e9, 1e9, 1e9], [-1e9, -1e9, -1e9]];
-  for (let i = 0; i < corners.length; i += 1) {
-    low[i % 3] = Math.min(low[i % 3], corners[i]);
-    high[i % 3] = Math.max(high[i % 3], corners[i]);
-  }
-  const middle = low.map((v, k) => (v + high[k]) / 2);
-  const size = Math.hypot(...low.map((v, k) => high[k] - v)) / 2 || 1;
+  const ends = [0, 1, 2].map((k) => extent(corners.filter((_, i) => i % 3 === k)));
+  const middle = ends.map(([low, high]) => (low + high) / 2);
+  const size = Math.hypot(...ends.map(([low, high]) => high - low)) / 2 || 1;
   const positions = Float32Array.from(corners, (v, i) => (v - middle[i % 3]) / size);
-  const colours = new Float32Array(corners.length);
-  for (let i = 0; i < corners.length; i += 1) colours[i] = tints[3 * Math.floor(i / 9) + i % 3] / 255;
+  const colours = Float32Array.from(corners, (_, i) => tints[3 * Math.floor(i / 9) + i % 3] / 255);
   gl.useProgram(made);
   for (const [attribute, values] of [["position", positions], ["tint", colours]]) {
     gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
@@ -68,39 +61,27 @@ function showModel(box, model, name) {
     gl.uniform1f(gl.getUniformLocation(made, "aspect"), canvas.width / canvas.height);
     gl.drawArrays(gl.TRIANGLES, 0, corners.length / 3);
   };
-  let held = null;
-  canvas.addEventListener("pointerdown", (event) => { held = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); });
-  canvas.addEventListener("pointerup", () => { held = null; });
-  canvas.addEventListener("pointermove", (event) => {
-    if (!held) return;
-    turnModel((event.clientX - held[0]) / 120, (event.clientY - held[1]) / 120);
-    held = [event.clientX, event.clientY];
-  });
+  canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
+  canvas.addEventListener("pointermove", (event) => { if (event.buttons) moveModel(event.movementX / 120, event.movementY / 120); });
   canvas.addEventListener("wheel", (event) => {
     // The page scrolls over it, unless it has the focus.
     if (document.activeElement !== canvas) return;
     event.preventDefault();
-    zoomModel(event.deltaY < 0 ? 1.1 : 1 / 1.1);
+    moveModel(0, 0, event.deltaY < 0 ? 1.1 : 1 / 1.1);
   }, { passive: false });
   canvas.addEventListener("keydown", (event) => {
-    const turns = { ArrowLeft: [-0.15, 0], ArrowRight: [0.15, 0], ArrowUp: [0, -0.15], ArrowDown: [0, 0.15] }[event.key];
-    const zoom = { "+": 1.15, "-": 1 / 1.15 }[event.key];
-    if (!turns && !zoom) return;
+    const step = { ArrowLeft: [-0.15, 0], ArrowRight: [0.15, 0], ArrowUp: [0, -0.15], ArrowDown: [0, 0.15], "+": [0, 0, 1.15], "-": [0, 0, 1 / 1.15] }[event.key];
+    if (!step) return;
     event.preventDefault();
-    if (turns) turnModel(...turns);
-    else zoomModel(zoom);
+    moveModel(...step);
   });
   solid.draw();
 }
 
-function turnModel(turn, tilt) {
+function moveModel(turn, tilt, nearer = 1) {
   solid.turn += turn;
   solid.tilt = Math.min(Math.max(solid.tilt + tilt, -1.5), 1.5);
-  solid.draw();
-}
-
-function zoomModel(factor) {
-  solid.zoom = Math.min(Math.max(solid.zoom * factor, 0.5), 12);
+  solid.zoom = Math.min(Math.max(solid.zoom * nearer, 0.5), 12);
   solid.draw();
 }
 
@@ -114,15 +95,11 @@ function startViewer() {
       showModel(box, chosen.model, `Trial ${chosen.number}`);
       return;
     }
-    box.append(make("p", { class: "small" }, "No CAD of this design was given to the report. Export it with the command above, then make the report with --exports and the folder."));
+    box.append(small("No CAD of this design was given to the report. Export it with the command above, then make the report with --exports and the folder."));
     const exported = Object.keys(current().models);
     if (!exported.length) return;
-    const line = make("p", { class: "small" }, "Exported: ");
-    for (const number of exported) {
-      const button = make("button", { type: "button" }, `trial ${number}`);
-      button.addEventListener("click", () => select(state.study, current().trials.trial.indexOf(Number(number))));
-      line.append(button, " ");
-    }
+    const line = small("Exported: ");
+    for (const number of exported) line.append(buttonOf(`trial ${number}`, () => select(state.study, current().trials.trial.indexOf(Number(number)))), " ");
     box.append(line);
   });
   window.addEventListener("resize", () => solid.draw());
