@@ -267,8 +267,10 @@ def _cache_folder() -> Path | None:
     named = os.environ.get(CACHE)
     if named is not None:
         return Path(named) if named else None
-    with suppress(RuntimeError):  # a user without a home
-        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "pareto_monoped"
+    if other := os.environ.get("XDG_CACHE_HOME"):
+        return Path(other) / "pareto_monoped"
+    with suppress(RuntimeError):  # a user without a home, whom Debian gives /nonexistent: it stays so
+        return Path.home() / ".cache" / "pareto_monoped" if Path.home().is_dir() else None
     return None
 
 

@@ -166,3 +166,15 @@ def test_a_map_from_what_is_kept_is_that_of_the_search(folder, rules):
                 (other.runner_up, other.families, other.binding)
             )
     assert len(list(folder.glob("*"))) == (motor.framed is not None) + (motor.frameless is not None)
+
+
+def test_a_home_that_does_not_exist_is_not_made(tmp_path, monkeypatch):
+    """A fuzzer's calls once made /nonexistent, Debian's home of users without one."""
+    for name in (CACHE, "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("HOME", str(tmp_path / "nonexistent"))
+    assert_first(kept("key", lambda: FIRST))
+    assert not (tmp_path / "nonexistent").exists()
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert_first(kept("key", lambda: FIRST))
+    assert list((tmp_path / ".cache" / "pareto_monoped").glob("*.npz"))
