@@ -7,7 +7,10 @@ is not shown; the bound below which no controller can be is ``jump.gravity.least
 a robot with delay, other motors and all that is uncertain is told beside it, and so is a law that keeps to the leg.
 """
 
+import copy
+import functools
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -95,6 +98,12 @@ class _Hardware:
         robots = robot_arrays(design, maps, calibration.mass)
         self.told = self.point_of(told_profiles(robots, control_of(design[None]), calibration, self.law)[0])
         self.floor_j = float(least_energy_j(robots, calibration, self.own.height_m)[0])
+
+    def alone(self) -> "_Hardware":
+        """Return the same with an evaluator and a count of its own, for another thread."""
+        other = copy.copy(self)
+        other._evaluator, other.jumps = Evaluator(self.maps, self.calibration, max(self.workers // 2, 1)), 0
+        return other
 
     def designs(self, points: Floats) -> Floats:
         designs = np.tile(self.base, (len(points), 1))
@@ -201,6 +210,25 @@ def _searched(hardware: _Hardware, goal: _Goal, start: Floats, jumps: int, seed:
     return float(least), point
 
 
+def _free_and_held(
+    hardware: _Hardware, goal: _Goal, seed: Sequence[int], *, start: Floats, jumps: int
+) -> dict[bool, tuple[float, Floats | None]]:
+    """Return the best values without and with strength among the limits, and their points; None for the own jump."""
+    own = hardware.own
+    value = float(-own.height_m[0] if goal.at_least_m is None else own.of(goal.energy)[0])
+    results: dict[bool, tuple[float, Floats | None]] = {}
+    for held in (False, True):
+        asked = replace(goal, held=held)
+        results[held] = least, reached = _searched(hardware, asked, start, jumps, (*seed, held))
+        if goal.at_least_m is not None:  # the greatest heights with and without strength have little in common
+            start = reached
+        if (not held or asked.missed(own)[0] == 0.0) and value <= least:
+            results[held] = (value, None)
+    # A jump that keeps more conditions keeps the fewer, too.
+    results[False] = min(results.values(), key=lambda one: one[0])
+    return results
+
+
 def _widened(knots: int) -> Floats:
     """Return the matrix that makes points with all knots of those with few, shape (25, 1 + 2 knots)."""
     block = TorqueOverTime(kind="torque_over_time", knots=knots).basis(np.linspace(0.0, 1.0, LAW.knots))
@@ -233,22 +261,19 @@ def limit_of(
         raise StudyError(f"design: does not jump ({own.reason[0]}); choose one that does")
     height_m, energy_j = float(own.height_m[0]), float(own.of(energy)[0])
     steep = _STEEP * energy_j / max(height_m - float(design[NAMES.index("start_height_m")]), 0.05)
-    found: dict[str, Reached | None] = {}
-    for number, (name, at_least_m) in enumerate((("least", height_m), ("greatest", None))):
-        value, start = energy_j if at_least_m else -height_m, hardware.told
-        results: dict[bool, tuple[float, Floats | None]] = {}
-        for held in (False, True):
-            goal = _Goal(at_least_m=at_least_m, held=held, energy=energy, steep_j_per_m=steep)
-            results[held] = least, reached = _searched(hardware, goal, start, jumps, (seed, number, held))
-            if at_least_m:  # the greatest heights with and without strength have little in common
-                start = reached
-            own_counts = not held or goal.missed(own)[0] == 0.0
-            if own_counts and value <= least:
-                results[held] = (value, None)
-        # A jump that keeps more conditions keeps the fewer, too.
-        results[False] = min(results.values(), key=lambda one: one[0])
-        for held, (least, point) in results.items():
-            found[f"{name}_held" if held else name] = _reached(hardware, point) if np.isfinite(least) else None
+    goals = (_Goal(at_least_m=at, held=False, energy=energy, steep_j_per_m=steep) for at in (height_m, None))
+    # Two searches side by side share the cores better than the few jumps of one generation.
+    sides = (hardware.alone(), hardware.alone()) if workers > 1 else (hardware, hardware)
+    search = functools.partial(_free_and_held, start=hardware.told, jumps=jumps)
+    with ThreadPoolExecutor(min(workers, 2)) as pool:
+        pairs = list(pool.map(search, sides, goals, ((seed, 0), (seed, 1))))
+    if workers > 1:
+        hardware.jumps += sum(side.jumps for side in sides)
+    found = {
+        f"{name}_held" if held else name: _reached(hardware, point) if np.isfinite(least) else None
+        for name, pair in zip(("least", "greatest"), pairs, strict=True)
+        for held, (least, point) in pair.items()
+    }
     least_free, greatest_free = found["least"], found["greatest"]
     assert least_free is not None
     assert greatest_free is not None
