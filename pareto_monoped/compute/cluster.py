@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _NEWS_S = 0.5  #: Between two questions to the scheduler who its workers are.
 _ANSWER_S = 5.0  #: For the answer; a network that is cut for longer than this gives no news, see ``_SILENT_S``.
 _SILENT_S = 30.0  #: Time without news before the scheduler counts as lost: three times a short network failure.
-_CONNECT_S = 10.0  #: For the first connection: then a wrong address is likelier than a slow scheduler.
+_CONNECT_S = 8.0  #: For the first connection: then a wrong address is likelier than a slow scheduler. Our own choice.
 _NO_WORKER = "has no worker"
 
 
