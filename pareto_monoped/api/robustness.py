@@ -133,7 +133,7 @@ def sensitivity(
     Example:
         >>> import pareto_monoped as pm
         >>> stored = pm.load_study("light.db")
-        >>> found = pm.sensitivity(stored, stored.pick("knee"), samples=64)
+        >>> found = pm.sensitivity(stored, stored.pick(min_height_m=0.7), samples=64)
         >>> sorted(set(found.about)), bool((found["height_m.total"] >= 0).any())
         (['assumptions', 'variables'], True)
     """

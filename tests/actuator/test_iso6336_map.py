@@ -206,6 +206,7 @@ def test_ring_walls_grow_with_the_module_so_that_larger_modules_win():
             assert wall >= 3.5 * actuator.gears.module_mm - 1e-9
 
 
+@pytest.mark.long
 def test_two_planets_only_if_asked_for(vt8020):
     def planets(settings):
         return {e.actuator.gears.planets for e in build_map(vt8020, settings).entries if e.actuator is not None}
@@ -243,6 +244,7 @@ def test_a_weaker_steel_closes_intervals_and_the_reason_is_strength(vt8020):
     assert "a harder steel" in weak.why_not(7.0)
 
 
+@pytest.mark.long
 def test_a_limit_that_is_off_opens_an_interval(vt8020):
     """The first interval that only lacks strength; without the rules that say so there is a gearbox."""
     strength = {"flank_strength", "root_strength", "overload_strength"}
@@ -258,6 +260,7 @@ def test_a_limit_that_is_off_opens_an_interval(vt8020):
     assert other.entries[place].actuator is None
 
 
+@pytest.mark.long
 def test_without_webs_intervals_close_and_masses_grow(vt8020):
     data = replace(DATA, second_carrier="pins")
     worse = build_map(vt8020, replace(SETTINGS, parts=replace(SETTINGS.parts, rating=data))).masses_kg()
@@ -291,6 +294,7 @@ def test_a_bearing_that_does_not_hold_forbids_the_gearbox_and_is_named(vt8020, r
     assert any(rule in names for entry in closed for names in entry.forbidden_by.values())
 
 
+@pytest.mark.long
 def test_bearings_that_do_not_hold_forbid_nothing_where_their_rules_are_off(vt8020):
     """All that the test above asks for, at a time."""
     service = replace(

@@ -23,7 +23,7 @@ def contents(folder):
 
 
 @pytest.fixture(scope="module")
-def original(tmp_path_factory):
+def original(unchecked_module, tmp_path_factory):
     """An export with a motor and a calibration of the user's own, whose files are gone by now; and where it lies."""
     place = tmp_path_factory.mktemp("record")
     motor, model = place / "mine.toml", place / "soft.toml"

@@ -77,6 +77,7 @@ def test_compare_prints_residuals_and_intervals(capsys, log):
     assert float(lines["knee"][2]) > 2.0 * float(lines["knee"][3])
 
 
+@pytest.mark.long
 def test_compare_as_json_fits_what_there_is(capsys, log):
     """Under ``ideal``, neither Coulomb friction nor elastic drives."""
     code, out, _ = run(capsys, "compare", log, "C", "--calibration", "ideal", "--json")

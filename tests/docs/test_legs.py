@@ -16,6 +16,7 @@ def script():
         yield found
 
 
+@pytest.mark.long
 def test_the_page_shows_what_its_script_predicts(script, capsys):
     leg = load_leg(script.LEG)
     found, _, term = script.fitted_leg(leg, script.TERM, script.FITTED_ON)

@@ -20,6 +20,9 @@ WRITTEN = sorted(
     for path in (ROOT / folder).glob("*.md")
 )
 
+SITE = pytest.mark.long
+"""What looks at the built site: building it takes ten seconds. CI builds it at every push, and fails on a warning."""
+
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory) -> Path:
@@ -44,12 +47,14 @@ def pages(site) -> dict[Path, Page]:
     return {file.resolve(): Page(file) for file in sorted(site.rglob("*.html"))}
 
 
+@SITE
 def test_no_link_anchor_or_image_of_the_site_is_broken(pages):
     assert len(pages) > 25
     assert sum(len(page.links) for page in pages.values()) > 1000
     assert broken(pages) == []
 
 
+@SITE
 def test_the_site_asks_for_nothing_from_a_network(site, pages):
     assert [(file.name, one) for file, page in pages.items() for one in page.fetched if outside(one)] == []
     sheets = list(site.rglob("*.css"))
@@ -57,6 +62,7 @@ def test_the_site_asks_for_nothing_from_a_network(site, pages):
     assert [(sheet.name, one) for sheet in sheets for one in styles(sheet.read_text("utf-8")) if outside(one)] == []
 
 
+@SITE
 def test_every_page_is_reached_from_the_first(site, pages):
     reached, new = set(), {(site / "index.html").resolve()}
     while new:
@@ -72,12 +78,14 @@ def anchors(pages: dict[Path, Page], name: str) -> set[str]:
     return page.ids
 
 
+@SITE
 def test_every_public_name_is_in_the_reference(pages):
     found = set().union(*(page.ids for file, page in pages.items() if file.parent.name == "reference"))
     public = {f"pareto_monoped.{name}" for name in pm.__all__ if name != "__version__"}
     assert public - found == set(), "add the module to a page of docs/reference, by the directive public-names"
 
 
+@SITE
 def test_every_command_and_option_is_in_the_reference(pages):
     import click
 
@@ -92,6 +100,7 @@ def test_every_command_and_option_is_in_the_reference(pages):
                 assert f"cmdoption-pareto-monoped-{name}-{longest}" in found, f"{name} --{longest}"
 
 
+@SITE
 def test_every_measure_and_variable_is_in_its_table(pages):
     assert {measure.name for measure in pm.MEASURES} <= anchors(pages, "measures")
     assert {variable.name for variable in VARIABLES} <= anchors(pages, "variables")

@@ -89,7 +89,7 @@ def metal_of(gears, root):
     return (cut_ring if root == "ring" else cut_gear)(*numbers, float(shape.tip_radius_mm))
 
 
-@pytest.mark.parametrize("every", [14, pytest.param(1, marks=pytest.mark.long)])
+@pytest.mark.parametrize("every", [20, pytest.param(1, marks=pytest.mark.long)])
 def test_how_deep_tips_reach_into_roots_is_what_is_measured_on_cut_teeth(every):
     sets = interfering()
     assert len(sets) == 40

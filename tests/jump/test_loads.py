@@ -101,7 +101,7 @@ def loads_by_mujoco(robots, control, calibration):
 
 
 @EVERY
-@pytest.mark.parametrize("rotors", ["armature", "absolute"])
+@pytest.mark.parametrize("rotors", [pytest.param("armature", marks=pytest.mark.long), "absolute"])
 def test_loads_are_those_of_the_constraints(designs, rotors, every):
     actuator_map = map_for("VT8020")
     calibration = replace(SMOOTH, joints=replace(SMOOTH.joints, rotors=rotors))

@@ -188,6 +188,7 @@ def test_link_masses_have_a_line_per_motor(source, source_u12):
     assert labels == ["thigh, VT8020", "shank, VT8020", "thigh, U12", "shank, U12"]
 
 
+@pytest.mark.long
 def test_the_same_study_gives_the_same_bytes(figures, payload, tmp_path):
     again = {path.name: path.read_bytes() for path in write_figures(payload, tmp_path)}
     assert again == {path.name: path.read_bytes() for path in figures}

@@ -67,7 +67,7 @@ def test_jumps_masses_and_cases_are_those_of_the_motor(several, payload):
 def test_pairs_of_motors_have_gearboxes_of_either_and_a_leg_of_both(folder, tmp_path):
     listed = {"gear_list": True, "rules": "iso6336", "hip_motor": "U12", "knee_motor": ["VT8020", "U8"]}
     algorithm = {"name": "random", "population": 60}
-    data = read_study(made(folder, name="pairs", evaluations=120, audit=False, algorithm=algorithm, **listed))
+    data = read_study(made(folder, name="pairs", evaluations=60, audit=False, algorithm=algorithm, **listed))
     again = resimulate(data, most_jumps=3)
     assert again.drift_m < 1e-9
     payload = build([Source(data=data, resimulation=again, models={})])

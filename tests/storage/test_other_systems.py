@@ -77,9 +77,9 @@ def test_a_second_process_is_refused_until_the_first_is_killed(tmp_path, other):
 _STUDY = """
 import pareto_monoped as pm
 folder = sys.argv[1]
-study = pm.Study.define(name="small", evaluations=40)
+study = pm.Study.define(name="small", evaluations=20)
 stored = pm.run(study, folder + "/small.db")
-stored = pm.resume(folder + "/small.db", evaluations=60)
+stored = pm.resume(folder + "/small.db", evaluations=30)
 pm.write_report(stored, folder + "/small.html")
 from pareto_monoped.compute.processes import Processes
 with Processes() as processes:
@@ -92,4 +92,4 @@ print(len(stored.trials), *sorted(os.listdir(folder)))
 def test_a_study_runs_and_goes_on(tmp_path):
     done = subprocess.run(without(_STUDY, tmp_path), capture_output=True, text=True, check=False)
     assert done.stderr == ""
-    assert done.stdout == "60 small.db small.html\n"
+    assert done.stdout == "30 small.db small.html\n"

@@ -97,13 +97,15 @@ def test_columns_and_readers_have_the_knots_that_are_searched(made):
     assert np.isfinite(loaded.front()["knee_knot_6"]).all()
 
 
-@pytest.mark.parametrize("algorithm", ["surrogate", pytest.param("weighted_cmaes", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("algorithm", ["surrogate", "weighted_cmaes"])
 def test_other_searches_begin_there_too(algorithm, tmp_path):
     settings = {"name": algorithm, "population": 10} | ({"iterations": 2} if algorithm == "weighted_cmaes" else {})
     run(study(algorithm=settings, evaluations=20), tmp_path / "s.db", workers=1)
     assert trials(tmp_path / "s.db").head(10)["height_m"].median() > 0.7
 
 
+@pytest.mark.long
 def test_a_study_of_the_tracking_law_begins_with_the_torques_of_the_virtual_leg(tmp_path):
     """Their damping stays a variable, and their knots leave to it what it tells the motors."""
     one = study(

@@ -34,6 +34,7 @@ def test_a_range_that_leads_the_thigh_into_the_frame_is_found(examine, failing, 
     assert all(" with the hip at 1" in text and "base_frame/" in text and "thigh/" in text for text in check.failures)
 
 
+@pytest.mark.long
 def test_a_range_that_leads_the_shank_into_the_thigh_is_found(examine, monkeypatch):
     with_range(monkeypatch, "knee", lower_rad=-3.14)
     check = examine()["the leg moves freely"]

@@ -47,7 +47,10 @@ def shaped_alike(contacts, monkeypatch):
     monkeypatch.setattr(retention, "_contacts", of_these)
 
 
-@pytest.mark.parametrize("motor", motor_names())
+@pytest.mark.parametrize(
+    "motor",
+    ["VT8020", "U12", "MAD_M6C12", *(pytest.param(name, marks=pytest.mark.long) for name in ("U8", "U10", "MN8014"))],
+)
 def test_every_part_is_held_on_either_family_of_any_motor(motor):
     found = map_for(motor)
     families = {}
