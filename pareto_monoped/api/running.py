@@ -21,7 +21,7 @@ from pareto_monoped.definition.given import as_list, as_plain, as_table, count_o
 from pareto_monoped.definition.study import Study, budgeted, study_from_dict
 from pareto_monoped.errors import InputError, StudyError, complaint, require_extra
 from pareto_monoped.jump.calibration import Calibration
-from pareto_monoped.jump.calibration_defaults import rules_for
+from pareto_monoped.jump.calibration_defaults import copies_for, rules_for
 from pareto_monoped.search.own_algorithm import own_algorithm_name
 from pareto_monoped.storage.place import StudyPlace
 from pareto_monoped.study.own_functions import Own, OwnFunction, functions_of, listed, own_name
@@ -190,8 +190,10 @@ def _asked(
         changes["calibration"] = stored_calibration_name(own_model)
     elif calibration is not None:
         changes["calibration"] = str(as_path(calibration, "calibration", allowed=_CALIBRATION))
-    if "calibration" in changes and rules_for(changes["calibration"]) == "paper":
-        changes["rules"] = "paper"
+    if "calibration" in changes:
+        changes["copies"] = copies_for(changes["calibration"])
+        if rules_for(changes["calibration"]) == "paper":
+            changes |= {"rules": "paper", "audit": False}
     own = _own_algorithm(algorithm)
     if algorithm is not None:
         changes["algorithm"] = {"name": own_algorithm_name(own)} if own is not None else _settings(algorithm)

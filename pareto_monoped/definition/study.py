@@ -40,7 +40,13 @@ from pareto_monoped.definition.variables import (
 )
 from pareto_monoped.design import ALL_DEFAULTS, ALL_NAMES, KNOT_NAMES, NAMES, RuleSet
 from pareto_monoped.errors import StudyError, complaint
-from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION, is_stand, rules_for, strength_for
+from pareto_monoped.jump.calibration_defaults import (
+    OWN_CALIBRATION,
+    copies_for,
+    is_stand,
+    rules_for,
+    strength_for,
+)
 from pareto_monoped.jump.laws import PAPER_LAW, Law, law_of
 from pareto_monoped.measures import SHARE_MEASURES, is_own, is_robust
 from pareto_monoped.pareto.objectives import Objectives, ReferencePoint
@@ -62,7 +68,8 @@ class Study:
     measure of strength is then constrained. ``gear_list`` says whether a free gear ratio goes through the list of
     gearboxes, and a stored design has their real ratios; else it is any ratio, as up to version 0.2.0. ``engine`` makes
     the jumps in place of the calibration's. ``controller`` is the law of the motors. ``uncertainty``
-    is there where the file has such a table, or an objective or a constraint is of jumps under uncertainty.
+    is there where the file has such a table, or an objective or a constraint is of jumps under uncertainty. ``copies``
+    is the number of copies, changed by up to 1e-6, whose medians are a design's measures; 1 takes its own jump.
     ``shared_iterations`` says whether the iterations of a weighted search are each weight's share of the budget,
     because the file gives none; it is not stored.
 
@@ -93,6 +100,7 @@ class Study:
     audit: bool
     strength: bool = False
     gear_list: bool = False
+    copies: int = 1
     uncertainty: Sampling | None = None
     algorithm: AlgorithmSettings
     shared_iterations: bool = field(default=False, compare=False)
@@ -206,8 +214,8 @@ class Study:
         del plain["shared_iterations"]
         if self.uncertainty is not None:
             plain["uncertainty"] = self.uncertainty.as_dict()
-        defaults = {"rules": "paper", "strength": False, "gear_list": False, "uncertainty": None, "engine": None}
-        for key, default in (defaults | dict.fromkeys(MOTOR_KEYS)).items():
+        defaults: dict[str, Any] = {"rules": "paper", "strength": False, "gear_list": False, "copies": 1}
+        for key, default in (defaults | dict.fromkeys(("uncertainty", "engine", *MOTOR_KEYS))).items():
             if plain[key] == default:
                 del plain[key]
         if self.controller == PAPER_LAW:
@@ -248,7 +256,10 @@ def load_study(
 def filled(values: dict[str, Any], *, source: str) -> Study:
     """Return the study of a file's keys, with the defaults of a file for those left out; see ``Study.define``."""
     calibration = str(values.get("calibration"))
+    copies = copies_for(calibration)
     defaults = {"rules": rules_for(calibration), "strength": strength_for(calibration), "gear_list": True}
+    # An audit would find each jump of a chaotic calibration changed by the smallest change.
+    defaults |= {} if copies == 1 else {"copies": copies, "audit": False}
     values = defaults | values
     if isinstance(name := values.get("algorithm"), str):
         values["algorithm"] = {"name": name}
@@ -278,7 +289,7 @@ def _require_names(study: Study, source: str) -> None:
 
 _AS_IN_FILE = (
     *("name", "description", "case", "calibration", "evaluations", "seed", "stop", "audit", "strength", "gear_list"),
-    "engine",
+    *("engine", "copies"),
 )
 
 
@@ -289,6 +300,10 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
     objectives = objectives_of(file.objectives, source=source)
     corner = corner_of(file.reference_point, objectives, source=source)
     robust = any(map(is_robust, objectives.names))
+    if file.copies > 1 and (
+        file.uncertainty is not None or any(map(is_robust, (*objectives.names, *file.constraints)))
+    ):
+        raise StudyError(f"{source}: copies = {file.copies}: must be 1 under uncertainty, which has samples; drop it")
     constraints = constraints_of(file.constraints, strength=file.strength, robust=robust, source=source)
     table = {} if file.uncertainty is None and any(map(is_robust, constraints.measures)) else file.uncertainty
     plain: dict[str, Any] = {name: getattr(file, name) for name in _AS_IN_FILE}

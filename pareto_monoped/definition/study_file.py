@@ -85,6 +85,7 @@ class StudyFile(Strict):
     audit: bool = True
     strength: bool = False  # of a stored study; a file without it takes the default of ``strength_for``
     gear_list: bool = False  # of a stored study; a file without it searches the list
+    copies: Annotated[int, Field(ge=1, le=100)] = 1  # of a stored study; see ``copies_for``
     uncertainty: dict[str, Any] | None = None
     algorithm: dict[str, Any] = field(default_factory=dict)
 

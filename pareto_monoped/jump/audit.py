@@ -122,6 +122,47 @@ def perturbed(designs: Floats, count: int, rng: np.random.Generator) -> Floats:
     return copies
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MedianEvaluator:
+    """Evaluates designs by medians over copies, each independently of the others to the last bit.
+
+    The first copy is the design itself; the continuous variables of the others are changed by up to 1e-6 of their
+    values, by the same factors for every design. A design jumps if more than half of its copies jump, and each measure
+    is its median over these. Else it ends as most of its copies do, of which the first says why.
+    """
+
+    evaluator: Evaluator  #: simulates
+    copies: int  #: per design, at least 1
+
+    def __call__(self, designs: ArrayLike, motors: ArrayLike | None = None) -> Evaluations:
+        """Jump with all copies of each design, shape (n, number of variables); see ``Evaluator``."""
+        values = np.atleast_2d(complete(designs))
+        copies = np.vstack([perturbed(one, self.copies, np.random.default_rng(0)) for one in values])
+        copies[:: self.copies] = values
+        jumps = self.evaluator(copies, None if motors is None else np.repeat(np.asarray(motors), self.copies))
+        ok = jumps.ok.reshape(-1, self.copies)
+        jumped = 2 * ok.sum(axis=1) > self.copies
+        place = np.arange(len(values)) * self.copies
+        place += [
+            0 if whole else _like_most(row)
+            for whole, row in zip(jumped, np.split(jumps.status, len(values)), strict=True)
+        ]
+        measures = {}
+        for name in (field.name for field in fields(jumps) if field.name not in ("status", "reason")):
+            every = jumps.of(name)
+            measures[name] = every[place]
+            for k in np.flatnonzero(jumped):
+                measures[name][k] = np.median(every.reshape(ok.shape)[k, ok[k]])
+        reasons = ("" if whole else jumps.reason[k] for whole, k in zip(jumped, place, strict=True))
+        return Evaluations(status=np.where(jumped, "ok", jumps.status[place]), reason=tuple(reasons), **measures)
+
+
+def _like_most(status: NDArray[np.str_]) -> int:
+    """Return the place of the first copy that ends as most of those do that fail."""
+    names, counts = np.unique(status[status != "ok"], return_counts=True)
+    return int(np.argmax(status == names[counts.argmax()]))
+
+
 def finer(calibration: Calibration, parts: int) -> Calibration:
     """Return the calibration with its step divided by ``parts``.
 

@@ -136,7 +136,12 @@ def notes(data: StudyData, again: "Resimulation") -> list[str]:
             f"{bad} design{' was' if bad == 1 else 's were'} taken off the front by the audit: their height or energy "
             "changes with the smallest change of the design or of the time step."
         )
-    if again.drift_m > _DRIFT_M:
+    if data.study.copies > 1:
+        lines.append(
+            f"Measures are medians over {data.study.copies} copies of each design, changed by up to 1e-6, because "
+            f"rounding decides a single jump under the calibration {data.study.calibration}. Films show the design's own."
+        )
+    elif again.drift_m > _DRIFT_M:
         lines.append(
             f"Heights simulated again for this page differ by up to {1000.0 * again.drift_m:.1f} mm from those stored: "
             "the code, a library version or the machine is not the one that the study ran with."

@@ -28,6 +28,7 @@ from pareto_monoped.design import (
     control_of,
 )
 from pareto_monoped.errors import CalibrationError, StudyError, complaint
+from pareto_monoped.jump.audit import MedianEvaluator
 from pareto_monoped.jump.calibration import Calibration, calibration_values, load_calibration
 from pareto_monoped.jump.calibration_defaults import OWN_CALIBRATION
 from pareto_monoped.jump.engines import told_profiles
@@ -127,7 +128,9 @@ def _begun(study: Study, evaluator: Evaluator) -> Floats:
 
 
 def evaluation_of(study: Study, evaluator: Evaluator) -> Evaluate:
-    """Return what evaluates the trials of a study: jumps as designed, and as built where it asks for those."""
+    """Return what evaluates the trials of a study: jumps as designed or medians of copies, and as built if it asks."""
+    if study.copies > 1:
+        return MedianEvaluator(evaluator=evaluator, copies=study.copies)
     if study.uncertainty is None or not study.robust_names:
         return evaluator
     return RobustEvaluator(
