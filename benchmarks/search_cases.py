@@ -2,8 +2,9 @@
 
     python benchmarks/search_cases.py               # what benchmarks/search_cases.md shows
     python benchmarks/search_cases.py --evaluations 1600
+    python benchmarks/search_cases.py --calibration paper --evaluations 2400    # a table of docs/model.md
 
-All energies are simulated here, under ``reference``, except for the column "published".
+All energies are simulated here, under ``reference`` or ``paper``, except for the column "published".
 """
 
 import argparse
@@ -14,11 +15,11 @@ from typing import Any
 import numpy as np
 from pandas import DataFrame
 
-from pareto_monoped.definition.study import study_from_dict
-from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES
+from pareto_monoped.definition.study import filled
+from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
-from pareto_monoped.study.simulator import load_simulator
+from pareto_monoped.study.simulator import evaluation_of, load_simulator
 
 WEIGHTS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 
@@ -29,23 +30,24 @@ def least_energy(front: DataFrame, height_m: float) -> str:
     return f"{high['energy_j'].min():.2f}" if len(high) else "not reached"
 
 
-def front(folder: Path, case: str, algorithm: dict[str, Any], evaluations: int) -> DataFrame:
+def front(folder: Path, case: str, algorithm: dict[str, Any], evaluations: int, calibration: str) -> DataFrame:
     """The front of a study of this case."""
     values = {"name": case, "case": case, "evaluations": evaluations, "audit": False, "algorithm": algorithm}
-    values |= {"rules": DEFAULT_RULES, "strength": True, "gear_list": True}
     path = folder / f"{case}-{algorithm['name']}.db"
-    run(study_from_dict(values, source="benchmark"), path)
+    run(filled(values | {"calibration": calibration}, source="benchmark"), path)
     return read_study(path).front()
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--evaluations", type=int, default=8_000, help="jumps per search")
-    evaluations = parser.parse_args().evaluations
-    values = {"name": "cases", "evaluations": 1, "rules": DEFAULT_RULES}
-    simulator = load_simulator(study_from_dict(values, source="benchmark"), workers=1)
+    parser.add_argument("--calibration", choices=("reference", "paper"), default="reference")
+    arguments = parser.parse_args()
+    evaluations, calibration = arguments.evaluations, arguments.calibration
+    study = filled({"name": "cases", "evaluations": 1, "calibration": calibration}, source="benchmark")
     cases = [PAPER_CASES[name] for name in ("A", "B", "C")]
-    simulated = simulator.evaluator(np.array([case.design.as_array() for case in cases]))
+    evaluate = evaluation_of(study, load_simulator(study, workers=1).evaluator)
+    simulated = evaluate(np.array([case.design.as_array() for case in cases]))
     print(
         "| case | published | paper's design here | weighted CMA-ES: least J at the published height | front: least J "
         "there | weighted: least J at the design's height here | front: least J there |\n|---|---|---|---|---|---|---|"
@@ -57,8 +59,8 @@ def main() -> None:
                 "height_weights": WEIGHTS,
                 "iterations": max(1, evaluations // (8 * len(WEIGHTS))),
             }
-            weighted = front(Path(name), case.name, sweep, evaluations)
-            ours = front(Path(name), case.name, {"name": "surrogate"}, evaluations)
+            weighted = front(Path(name), case.name, sweep, evaluations, calibration)
+            ours = front(Path(name), case.name, {"name": "surrogate"}, evaluations, calibration)
             here = float(simulated.height_m[i])
             cells = [
                 case.name,

@@ -257,7 +257,7 @@ def filled(values: dict[str, Any], *, source: str) -> Study:
     """Return the study of a file's keys, with the defaults of a file for those left out; see ``Study.define``."""
     calibration = str(values.get("calibration"))
     copies = copies_for(calibration)
-    defaults = {"rules": rules_for(calibration), "strength": strength_for(calibration), "gear_list": True}
+    defaults: dict[str, Any] = {"rules": rules_for(calibration), "strength": strength_for(calibration), "gear_list": True}
     # An audit would find each jump of a chaotic calibration changed by the smallest change.
     defaults |= {} if copies == 1 else {"copies": copies, "audit": False}
     values = defaults | values
