@@ -257,9 +257,9 @@ def filled(values: dict[str, Any], *, source: str) -> Study:
     """Return the study of a file's keys, with the defaults of a file for those left out; see ``Study.define``."""
     calibration = str(values.get("calibration"))
     copies = copies_for(calibration)
-    defaults: dict[str, Any] = {"rules": rules_for(calibration), "strength": strength_for(calibration), "gear_list": True}
+    defaults: dict[str, Any] = {"rules": rules_for(calibration), "strength": strength_for(calibration)}
     # An audit would find each jump of a chaotic calibration changed by the smallest change.
-    defaults |= {} if copies == 1 else {"copies": copies, "audit": False}
+    defaults |= {"gear_list": True} if copies == 1 else {"gear_list": True, "copies": copies, "audit": False}
     values = defaults | values
     if isinstance(name := values.get("algorithm"), str):
         values["algorithm"] = {"name": name}

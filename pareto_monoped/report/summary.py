@@ -139,7 +139,8 @@ def notes(data: StudyData, again: "Resimulation") -> list[str]:
     if data.study.copies > 1:
         lines.append(
             f"Measures are medians over {data.study.copies} copies of each design, changed by up to 1e-6, because "
-            f"rounding decides a single jump under the calibration {data.study.calibration}. Films show the design's own."
+            f"rounding decides a single jump under the calibration {data.study.calibration}. Films show the design's "
+            "own jump."
         )
     elif again.drift_m > _DRIFT_M:
         lines.append(
