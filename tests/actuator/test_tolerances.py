@@ -57,7 +57,7 @@ def fit(actuator, off):
     """Whether each of n gearboxes goes together and turns, by putting it together."""
     fits = assembling.put_together(actuator, off) & assembling.pins_fit(actuator, off)
     fits &= assembling.meshes(actuator, off) & assembling.bearings_run(off)
-    fits &= assembling.rings_in_grooves(actuator, off)
+    fits &= assembling.rings_in_grooves(actuator, off) & assembling.tips_run(actuator, off)
     return fits & (off["sun", "neck, set when bonded", 0] + 0.2 >= assembling.TURNING_MM)
 
 
