@@ -17,6 +17,7 @@ from pareto_monoped.actuator.rating.load import runout_um
 from pareto_monoped.geometry.chains import Chain, Link
 from pareto_monoped.geometry.making import GENERAL_SERIES, RATED_SERIES, limits, thickness_tolerance_mm
 from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle
 
 _TURNING_MM = 0.05
@@ -332,8 +333,8 @@ class _Teeth:
         self.gears = {"sun": gears.sun(), "planet": gears.planet(), "ring": gears.ring()}
         self.slopes = [2.0 * float(np.tan(one)) for one in (gears.working_angle_rad, gears.ring_working_angle_rad)]
         self.series = RATED_SERIES if actuator.rating is not None else GENERAL_SERIES
-        needles = any(part.name == "planet_needles" for part in actuator.parts)
-        self.play_mm = NEEDLE_PLAY_MM if needles else _BUSH_PLAY_MM
+        bushes = any(part.role is Role.BUSH for part in actuator.parts)
+        self.play_mm = _BUSH_PLAY_MM if bushes else NEEDLE_PLAY_MM
         # Of a part's teeth, the first are those of the gear itself.
         self.runout_mm = {part.name: part.teeth[0].runout_mm for part in actuator.parts if part.teeth}
 
