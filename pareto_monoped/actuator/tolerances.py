@@ -15,6 +15,7 @@ from pareto_monoped.actuator.gearset import NEEDLE_PLAY_MM, PIN_PLACE_MM
 from pareto_monoped.actuator.layout import NECK_PLAY_MM, NECK_WITHIN_MM
 from pareto_monoped.actuator.rating.load import runout_um
 from pareto_monoped.geometry.chains import Chain, Link
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.making import GENERAL_SERIES, RATED_SERIES, limits, thickness_tolerance_mm
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import Role
@@ -330,7 +331,11 @@ class _Teeth:
     def __init__(self, actuator: Actuator) -> None:
         gears = actuator.gears
         self.module_mm, self.centre_mm = float(gears.module_mm), float(gears.carrier_radius_mm)
-        self.gears = {"sun": gears.sun(), "planet": gears.planet(), "ring": gears.ring()}
+        self.gears: dict[str, ExternalGear | InternalGear] = {
+            "sun": gears.sun(),
+            "planet": gears.planet(),
+            "ring": gears.ring(),
+        }
         self.slopes = [2.0 * float(np.tan(one)) for one in (gears.working_angle_rad, gears.ring_working_angle_rad)]
         self.series = RATED_SERIES if actuator.rating is not None else GENERAL_SERIES
         bushes = any(part.role is Role.BUSH for part in actuator.parts)
