@@ -38,9 +38,10 @@ FORM_MARGIN_MODULES = 0.02
 """From where a flank begins, or ends in a ring, to where its mate's tip reaches, along the radius: our own choice."""
 PIN_PLACE_MM = 0.01
 """By how much a pin may be off its place: the zone of the pins' holes on the drawing is Ø0.02."""
-CENTRE_TOLERANCE_MM = PIN_PLACE_MM + 0.012
-"""By how much a planet's axis may be off its place along the radius, with half the greatest play of needles between F7
-and m6."""
+NEEDLE_PLAY_MM = 0.012
+"""By how much a planet may be off its pin: half the greatest play of needles between F7 and m6."""
+CENTRE_TOLERANCE_MM = PIN_PLACE_MM + NEEDLE_PLAY_MM
+"""By how much a planet's axis may be off its place along the radius."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,18 +4,21 @@ The lengths and their limits are those of the parts (``Part.lengths``), which th
 stands here: the play of bearings, what is set when parts are bonded, and how far teeth run out.
 """
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from pareto_monoped.actuator.actuator import Actuator
 from pareto_monoped.actuator.bearings import axial_play_mm, bore_less_mm, clearance_mm, rated_bearing
-from pareto_monoped.actuator.gearset import PIN_PLACE_MM
+from pareto_monoped.actuator.gearset import NEEDLE_PLAY_MM, PIN_PLACE_MM
 from pareto_monoped.actuator.layout import NECK_PLAY_MM, NECK_WITHIN_MM
 from pareto_monoped.actuator.rating.load import runout_um
 from pareto_monoped.geometry.chains import Chain, Link
+from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.making import GENERAL_SERIES, RATED_SERIES, limits, thickness_tolerance_mm
 from pareto_monoped.geometry.parts import Part
+from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle
 
 _TURNING_MM = 0.05
@@ -30,17 +33,29 @@ _DOWEL_MM = 0.2
 """By how much less than drawn a dowel may stand out; our own choice."""
 _CENTRED_MM = 0.005
 """By how much a ring is off the planets' common axis that was bonded while they turned in it; our own choice."""
+_BUSH_PLAY_MM = 0.026
+"""By how much a planet may be off its pin in a bush: half of what 8 H7 and walls of 0.980 mm (ISO 3547-1, 1 mm +0.005 /
+-0.020; cited from memory) leave around a pin 6 m6."""
+_TIP_CLEARANCE = 0.05
+"""Of tips in roots at worst, in modules: half of what DIN 867 asks as drawn, 0.1 to 0.4; our own choice."""
+_TIP_WIDTH = 0.3
+"""Of teeth at their tips at worst, in modules: the least that handbooks give case-hardened ones (Niemann/Winter)."""
+_STEP_MODULES = 0.02
+"""Of the secant that says how fast teeth become narrower at their tips: about both eccentricities together."""
+_OF = {"sun": "sun's", "planet": "planets'", "ring": "ring's"}
 
 
 def gearbox_chains(actuator: Actuator) -> tuple[Chain, ...]:
     """Return all chains of a gearbox."""
-    sums = _Sums(actuator)
+    sums, teeth = _Sums(actuator), _Teeth(actuator)
     return (
         *_planet_chains(sums),
         *_bearing_chains(sums, actuator),
         *_rotor_chains(sums, actuator),
         *_clearances(sums),
-        *_backlash(sums, actuator),
+        *_backlash(teeth),
+        *_tip_clearances(teeth),
+        *_tip_widths(teeth),
     )
 
 
@@ -306,48 +321,125 @@ def _clearances(sums: _Sums) -> tuple[Chain, ...]:
     return tuple(chains)
 
 
-def _backlash(sums: _Sums, actuator: Actuator) -> tuple[Chain, ...]:
+class _Teeth:
+    """What may be off about the teeth of an actuator, as links.
+
+    An eccentricity counts where the gear meets its mate: positive where it takes sun or ring away from the planet, or
+    the planet away from the sun. Tips are turned and teeth cut in different clampings, so each has one of its own.
+    """
+
+    def __init__(self, actuator: Actuator) -> None:
+        gears = actuator.gears
+        self.module_mm, self.centre_mm = float(gears.module_mm), float(gears.carrier_radius_mm)
+        self.gears: dict[str, ExternalGear | InternalGear] = {
+            "sun": gears.sun(),
+            "planet": gears.planet(),
+            "ring": gears.ring(),
+        }
+        self.slopes = [2.0 * float(np.tan(one)) for one in (gears.working_angle_rad, gears.ring_working_angle_rad)]
+        self.series = RATED_SERIES if actuator.rating is not None else GENERAL_SERIES
+        bushes = any(part.role is Role.BUSH for part in actuator.parts)
+        self.play_mm = _BUSH_PLAY_MM if bushes else NEEDLE_PLAY_MM
+        # Of a part's teeth, the first are those of the gear itself.
+        self.runout_mm = {part.name: part.teeth[0].runout_mm for part in actuator.parts if part.teeth}
+
+    def thinning(self, part: str, slope: float = 1.0) -> Link:
+        """Return by how much the teeth are thinner than without backlash."""
+        gear = self.gears[part]
+        most = float(thickness_tolerance_mm(2.0 * gear.pitch_radius_mm, self.series))
+        thin = float(gear.backlash_mm)
+        return Link(part=part, name="thinning of teeth", sign=slope, nominal_mm=thin, lower_mm=0.0, upper_mm=most)
+
+    def eccentric(self, part: str, slope: float, of: str = "") -> Link:
+        """Return half the runout of a gear's teeth, or ``of tips`` that of its tips."""
+        pitch_mm = 2.0 * float(self.gears[part].pitch_radius_mm)
+        runout_mm = self.runout_mm.get(part) or 1e-3 * float(runout_um(pitch_mm, self.module_mm, _GENERAL_CLASS))
+        return Link.about(part, f"eccentricity {of}".strip(), 0.5 * runout_mm, sign=slope)
+
+    def axes(self, mesh: int, slope: float) -> tuple[Link, ...]:
+        """Return by how much the axes of a mesh are off, without eccentricities: 0 of sun and planet, 1 of the ring."""
+        pin = partial(Link.about, "carrier", "place of the pin", PIN_PLACE_MM)
+        if mesh:
+            return pin(sign=-slope), Link.about("ring", "place, set when bonded", _CENTRED_MM, sign=slope)
+        return pin(sign=slope), Link.about("carrier", "place of the end bearing", _SEAT_OFF_MM, sign=slope)
+
+    def tip(self, part: str, slope: float, nominal_mm: float = 0.0) -> Link:
+        """Return a tip diameter, with the limits of its class; without ``nominal_mm`` its deviation alone."""
+        zone = "H9" if part == "ring" else "h9"
+        found = limits(2.0 * float(self.gears[part].tip_radius_mm), zone)
+        of = partial(Link, part=part, name="tip diameter", nominal_mm=nominal_mm)
+        return of(sign=0.5 * slope, lower_mm=found.lower_mm, upper_mm=found.upper_mm)
+
+    def root(self, part: str, slope: float) -> tuple[Link, ...]:
+        """Return a root diameter: of sun and planets without thinning, and how much deeper the rack is fed for it.
+
+        A ring's root is as drawn: its wire can only go farther out.
+        """
+        full = replace(self.gears[part], backlash_mm=0.0)
+        root = Link.about(part, "root diameter", 0.0, nominal_mm=2.0 * float(full.root_radius_mm), sign=0.5 * slope)
+        fed = -0.5 * slope / float(np.tan(full.pressure_angle_rad))
+        return (root,) if part == "ring" else (root, self.thinning(part, fed))
+
+
+def _backlash(teeth: _Teeth) -> tuple[Chain, ...]:
     """Return the backlash of both meshes along the pitch circle; a shift s of an axis takes 2 tan(alpha_w) s."""
-    gears, series = actuator.gears, RATED_SERIES if actuator.rating is not None else GENERAL_SERIES
+    chains = []
+    for mesh, (first, second) in enumerate((("sun", "planet"), ("planet", "ring"))):
+        slope = teeth.slopes[mesh]
+        thin = (teeth.thinning(first), teeth.thinning(second))
+        off = (teeth.eccentric(first, -slope if mesh else slope), teeth.eccentric(second, slope))
+        links = (*thin, *teeth.axes(mesh, slope), *off)
+        chains.append(
+            Chain(name=f"backlash of {first} and {second}", links=links, cure="raise gears.backlash_least_mm")
+        )
+    return tuple(chains)
 
-    def thickness(part: str, pitch_mm: float, thinned_mm: float) -> Link:
-        most = float(thickness_tolerance_mm(pitch_mm, series))
-        return Link(part=part, name="thinning of teeth", sign=1.0, nominal_mm=thinned_mm, lower_mm=0.0, upper_mm=most)
 
-    def off(part: str, name: str, slope: float, within_mm: float) -> Link:
-        return Link.about(part, name, within_mm, sign=slope)
+def _tip_clearances(teeth: _Teeth) -> tuple[Chain, ...]:
+    """Return the radial clearance between the tips of each gear and the roots of its mate."""
+    chains = []
+    for tip, root in (("sun", "planet"), ("planet", "sun"), ("planet", "ring"), ("ring", "planet")):
+        mesh = int("ring" in (tip, root))
+        away = {"sun": 1.0, "planet": -1.0 if mesh else 1.0, "ring": 1.0}
+        grows = {"sun": -1.0, "planet": -1.0, "ring": 1.0}
+        pin, other = teeth.axes(mesh, 1.0)
+        chains.append(
+            Chain(
+                name=f"clearance of the {_OF[tip]} tips in the {_OF[root]} roots",
+                links=(
+                    replace(pin, nominal_mm=teeth.centre_mm),
+                    other,
+                    Link.about("planet", "play on its pin", teeth.play_mm, sign=away["planet"]),
+                    teeth.tip(tip, grows[tip], 2.0 * float(teeth.gears[tip].tip_radius_mm)),
+                    *teeth.root(root, grows[root]),
+                    teeth.eccentric(tip, away[tip], "of tips"),
+                    teeth.eccentric(root, away[root]),
+                ),
+                least_mm=_TIP_CLEARANCE * teeth.module_mm,
+                cure=f"cut the {_OF[tip]} tips shorter",
+            )
+        )
+    return tuple(chains)
 
-    def eccentric(part: str, slope: float, pitch_mm: float) -> Link:
-        made = sums.parts[part].teeth[:1]  # the first are those of the gear itself
-        general_mm = 1e-3 * float(runout_um(pitch_mm, gears.module_mm, _GENERAL_CLASS))
-        return off(part, "eccentricity", slope, 0.5 * (made[0].runout_mm if made and made[0].runout_mm else general_mm))
 
-    sun, planet, ring = (2.0 * float(one.pitch_radius_mm) for one in (gears.sun(), gears.planet(), gears.ring()))
-    thin = [float(one.backlash_mm) for one in (gears.sun(), gears.planet(), gears.ring())]
-    outer, inner = (2.0 * float(np.tan(angle)) for angle in (gears.working_angle_rad, gears.ring_working_angle_rad))
-    return (
-        Chain(
-            name="backlash of sun and planet",
-            links=(
-                thickness("sun", sun, thin[0]),
-                thickness("planet", planet, thin[1]),
-                off("carrier", "place of the pin", outer, PIN_PLACE_MM),
-                off("carrier", "place of the end bearing", outer, _SEAT_OFF_MM),
-                eccentric("sun", outer, sun),
-                eccentric("planet", outer, planet),
-            ),
-            cure="raise gears.backlash_least_mm",
-        ),
-        Chain(
-            name="backlash of planet and ring",
-            links=(
-                thickness("planet", planet, thin[1]),
-                thickness("ring", ring, thin[2]),
-                off("carrier", "place of the pin", -inner, PIN_PLACE_MM),
-                off("ring", "place, set when bonded", inner, _CENTRED_MM),
-                eccentric("planet", -inner, planet),
-                eccentric("ring", inner, ring),
-            ),
-            cure="raise gears.backlash_least_mm",
-        ),
-    )
+def _tip_widths(teeth: _Teeth) -> tuple[Chain, ...]:
+    """Return how wide the teeth are at their tips, along the arc, before their edges are broken.
+
+    The width falls by the thinning times the proportion of the radii, and the faster the farther a tip stands out.
+    """
+    chains = []
+    for part, gear in teeth.gears.items():
+        width, reach = float(gear.tip_thickness_mm), float(gear.tip_radius_mm / gear.pitch_radius_mm)
+        longer = replace(gear, tip_shortening=gear.tip_shortening - _STEP_MODULES)
+        lost = float(width - longer.tip_thickness_mm) / (_STEP_MODULES * teeth.module_mm)
+        full = width + reach * float(gear.backlash_mm)
+        links = (
+            Link.about(part, "tips without thinning", 0.0, nominal_mm=full, sign=1.0),
+            teeth.thinning(part, -reach),
+            teeth.tip(part, lost if part == "ring" else -lost),
+            teeth.eccentric(part, -lost),
+            teeth.eccentric(part, lost, "of tips"),
+        )
+        least_mm, cure = _TIP_WIDTH * teeth.module_mm, "take less profile shift"
+        chains.append(Chain(name=f"width of the {_OF[part]} tips", links=links, least_mm=least_mm, cure=cure))
+    return tuple(chains)

@@ -19,6 +19,7 @@ ROTOR = ("coupling", "motor_rotor")
 APART = [("housing", "carrier"), ("housing", "planet"), ("housing", "rotor"), ("carrier", "rotor"), ("planet", "rotor")]
 """Bodies that turn against each other; between planets and carrier stand washers."""
 TURNING_MM = 0.05
+PLACE = "place, set when bonded"
 
 
 def annulus(prism):
@@ -265,6 +266,50 @@ def meshes(actuator, off):
     inner = pitch - arc(planet, z2, thickness("planet", planet, 1.0), r2, angle, 1.0)
     inner = inner - arc(ring, z3, thickness("ring", ring, -1.0), r3, angle, -1.0)
     return (outer >= 0.0) & (inner >= 0.0)
+
+
+def tips_run(actuator, off):
+    """Whether tips keep 0.05 modules from their mates' roots on the line of centres, and 0.3 modules of their width.
+
+    The rack that cuts a space fills it; its tip is 1.25 modules below the line on which it is as wide as its gaps.
+    """
+    gears = actuator.gears
+    module, fits = float(gears.module_mm), True
+
+    def at(part, name):
+        return off.get((part, name, 0), 0.0)
+
+    shapes = {"sun": gears.sun(), "planet": gears.planet(), "ring": gears.ring()}
+    pin = float(gears.carrier_radius_mm) + at("carrier", "place of the pin") + at("planet", "play on its pin")
+    axis = {"sun": -at("carrier", "place of the end bearing"), "planet": pin, "ring": at("ring", PLACE)}
+    # The axis to which the sun is moved away from the planet lies on its other side.
+    sides = {"sun": -1.0, "planet": 1.0, "ring": 1.0}
+    teeth_at = {part: axis[part] + sides[part] * at(part, "eccentricity") for part in shapes}
+    tips_at = {part: axis[part] + sides[part] * at(part, "eccentricity of tips") for part in shapes}
+    tip_mm, root_mm = {}, {}
+    for part, gear in shapes.items():
+        pitch, inner = 0.5 * module * float(gear.teeth), part == "ring"
+        thin = float(gear.backlash_mm) + at(part, "thinning of teeth")
+        outwards = -float(gear.shift) if inner else float(gear.shift)
+        thick = 0.5 * np.pi * module + 2.0 * outwards * module * np.tan(ALPHA) - thin
+        tip_mm[part] = float(gear.tip_radius_mm) + 0.5 * at(part, "tip diameter")
+        root_mm[part] = pitch + 0.5 * (thick - 0.5 * np.pi * module) / np.tan(ALPHA) - 1.25 * module
+        if inner:
+            root_mm[part] = pitch + (1.25 + float(gear.shift)) * module
+        # Off its teeth, a tip circle cuts one tooth as if it were larger.
+        radius = tip_mm[part] + at(part, "eccentricity of tips") - at(part, "eccentricity")
+        if not inner:
+            radius = tip_mm[part] + at(part, "eccentricity") - at(part, "eccentricity of tips")
+        lean = inv(np.arccos(pitch * np.cos(ALPHA) / radius)) - inv(ALPHA)
+        wide = 2.0 * radius * (0.5 * thick / pitch + (lean if inner else -lean))
+        fits &= wide >= 0.3 * module - 1e-9
+    gaps = (
+        teeth_at["planet"] - root_mm["planet"] - tips_at["sun"] - tip_mm["sun"],
+        tips_at["planet"] - tip_mm["planet"] - teeth_at["sun"] - root_mm["sun"],
+        teeth_at["ring"] + root_mm["ring"] - tips_at["planet"] - tip_mm["planet"],
+        tips_at["ring"] + tip_mm["ring"] - teeth_at["planet"] - root_mm["planet"],
+    )
+    return fits & np.all([gap >= 0.05 * module - 1e-9 for gap in gaps], axis=0)
 
 
 def bearings_run(off):

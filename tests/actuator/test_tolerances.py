@@ -57,7 +57,7 @@ def fit(actuator, off):
     """Whether each of n gearboxes goes together and turns, by putting it together."""
     fits = assembling.put_together(actuator, off) & assembling.pins_fit(actuator, off)
     fits &= assembling.meshes(actuator, off) & assembling.bearings_run(off)
-    fits &= assembling.rings_in_grooves(actuator, off)
+    fits &= assembling.rings_in_grooves(actuator, off) & assembling.tips_run(actuator, off)
     return fits & (off["sun", "neck, set when bonded", 0] + 0.2 >= assembling.TURNING_MM)
 
 
@@ -123,21 +123,24 @@ def test_the_share_that_assembles_is_that_of_gearboxes_put_together(name, rules,
 def test_every_chain_ends_where_parts_meet(rules):
     """A little above its least gap a gearbox turns, a little below it jams: no length is missing or counted twice.
 
-    Backlash is not quite linear in the distance of the axes.
+    Backlash is not quite linear in the distance of the axes. Widths of tips are so little linear that they are looked
+    at within their limits only (``test_tip_limits``).
     """
     seen, every = set(), set()
     for actuator in (one for name in ("VT8020", "U12") for one in winners(name, rules)[::6]):
         chains = gearbox_chains(actuator)
-        every |= {(actuator.family, chain.name) for chain in chains}
-        for chain in chains:
+        ending = [chain for chain in chains if not chain.name.startswith("width of the")]
+        every |= {(actuator.family, chain.name) for chain in ending}
+        for chain in ending:
             little_mm = {"backlash": 0.003, "running": 0.0005}.get(chain.name.split()[0], 0.01)
             above, below = (at_the_limit(chains, chain, over_mm) for over_mm in (little_mm, -little_mm))
             if above is not None and below is not None:
                 turns = fit(actuator, {key: np.array([above[key], below[key]]) for key in above})
                 assert turns.tolist() == [True, False], chain.text
                 seen.add((actuator.family, chain.name))
-    # Of these, other parts meet first.
-    assert every - seen <= {("ISSPG", "second carrier to coupling and dowels")}
+    # Of these, other parts meet first; under iso6336, flanks meet before tips do.
+    missing = {one for one in every - seen if rules == "paper" or not one[1].startswith("clearance of the")}
+    assert missing <= {("ISSPG", "second carrier to coupling and dowels")}
 
 
 def test_every_length_with_limits_ends_at_faces_and_is_part_of_a_chain():

@@ -144,6 +144,8 @@ def gear_rows(
         measured,
         ("Tooth thickness tolerance", f"DIN 3967, series {series}"),
         ("Accuracy of the teeth", f"ISO 1328-1 class {grade or 8}"),
+        # The dimension chains of tips take no more.
+        *([("Radial runout of the tips", "at most that of the teeth")] if making is None or making.quality else ()),
         ("Backlash of the pair, at least", number(play)),
         *([("Backlash of the pair, at most", number(round(play + loss, 3)))] if making else ()),
         *(_making_rows(making, hardness) if making is not None else ()),

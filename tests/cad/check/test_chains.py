@@ -41,3 +41,11 @@ def test_wider_limits_are_refused_with_the_chain_that_jams(product, failing, par
     assert any(f"knee actuator: {says}" in text for text in check.failures)
     assert all("\n" not in text for text in check.failures)
     assert check.name in failing(product=replace(product, robot=broken))
+
+
+def test_teeth_too_thin_for_their_tips_are_refused(product):
+    robot = product.robot
+    gears = replace(robot.knee.gears, backlash_mm=0.25)
+    check = check_chains(replace(robot, knee=replace(robot.knee, gears=gears)))
+    assert not check.passed
+    assert any("knee actuator: width of the sun's tips = " in text for text in check.failures)
