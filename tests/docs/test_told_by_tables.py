@@ -6,6 +6,7 @@ missing, change it on the page; where its words were changed, change them here.
 """
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -22,7 +23,20 @@ def actuators():
     ours = maps.set_index("motor")["under `iso6336`"]["VT8020"]
     grams = changes["mass, mean change"]["no profile shift"].removeprefix("+")
     yield f"without shift there are {changes.gearboxes['no profile shift']} gearboxes, {grams} heavier"
-    yield f"of the {maps['under `iso6336`'].sum()} winners of six motors"
+    winners = (
+        table("docs/actuators.md", "of the winners of six motors").set_index("of the winners of six motors").figure
+    )
+
+    def share(row):
+        some, of_all = (float(number) for number in re.findall(r"(\d+) of (\d+)", winners[row])[0])
+        return some / of_all
+
+    assert winners["of module 0.5 mm"].endswith(f" of {maps['under `iso6336`'].sum()}")
+    assert share("with profile shift, of the VT8020") > 0.5  # most
+    assert share("ring in the planets' roots with standard tips") == pytest.approx(2 / 3, abs=0.05)
+    assert share("the same with straight planets") == pytest.approx(0.8, abs=0.05)
+    crowned = share("$K_{H\\beta}$ at the sun")
+    yield f"above 2 in one of {1.0 / crowned:.0f} gearboxes instead of four of five"
     yield f"none of their {maps['gearboxes under `paper`'].sum()} winners overlaps"
     yield f"the map of the VT8020, which has {ours} gearboxes"
     yield (
@@ -36,7 +50,10 @@ def actuators():
 def bench():
     cells = table("docs/bench.md", "actuator", "load cell")
     found = table("docs/bench.md", "what", "predicted").set_index("what")
-    losses, electrical = table("docs/bench.md", "friction coefficient"), table("docs/bench.md", "actuator", "voltage drop, V")
+    losses, electrical = (
+        table("docs/bench.md", "friction coefficient"),
+        table("docs/bench.md", "actuator", "voltage drop, V"),
+    )
     machined = table("docs/bench.md", "ratio", "together, %")["together, %"]
     drops, ohms = firsts(electrical["voltage drop, V"]), firsts(electrical["resistance, ohm"])
     more = 100.0 * (firsts(electrical["torque over command"]) - 1.0)
@@ -118,7 +135,8 @@ def losses():
         {name: row for (name, at), row in found.iterrows() if at.startswith(start)} for start in ("knee", "highest")
     )
     peaks, heights = (
-        {name: float(at.split()[1]) for name, at in found.index if at.startswith(start)} for start in ("highest", "knee")
+        {name: float(at.split()[1]) for name, at in found.index if at.startswith(start)}
+        for start in ("highest", "knee")
     )
 
     def more(setting, at, column="energy, J"):
@@ -153,11 +171,13 @@ def model():
     reads = table("docs/model.md", "controller reads").set_index("controller reads").loc["the state"]
     yield f"takes {thirds(reads, 1)[0]:.1f} percent less energy than a converged"
     stop = table("docs/model.md", "stop", "w, rad").iloc[:, 4:]
-    yield f"off by at most {stop.max().iloc[0]} percent of the torque at the full travel, and by {stop.max().iloc[1]} percent in"
+    full, mean = stop.max()
+    yield f"off by at most {full} percent of the torque at the full travel, and by {mean} percent in the mean"
     jumps = table("docs/model.md", "design", "with", "chain N").set_index(["with", "design"])
     before, after = jumps.loc["`reference-3`"], jumps.loc["friction: `reference`"]
     higher = 1e3 * (after["height m"] - before["height m"]).abs().max()
-    yield f"pulls {between(after['chain N'] / before['chain N'], 1)} times as hard as with rigid drives, while heights change by {higher:.0f} mm"
+    harder = between(after["chain N"] / before["chain N"], 1)
+    yield f"pulls {harder} times as hard as with rigid drives, while heights change by {higher:.0f} mm"
     closed = [float(cell.split()[0]) for cell in table("docs/model.md", "case", "open")["open"]]
     yield f"the balance closes to {max(closed):.2f} % on the paper's designs"
     fit = table("docs/model.md", "case", "paper", "5 to 95 %").set_index("case")
@@ -165,8 +185,10 @@ def model():
     yield f"All eight numbers are within {off} %"
     heights, joules = fit["height m"], fit["energy J"]
     assert heights["A"] < heights["C"] < heights["B"]
-    yield f"here B ({heights['B']:.3f} m) is higher than C ({heights['C']:.3f} m), and A ({heights['A']:.3f} m) is lowest"
-    yield f"Case C takes {100.0 * (1.0 - joules['C'] / joules['nominal']):.0f} % less energy than nominal, as in the paper"
+    a, b, c = (f"({heights[case]:.3f} m)" for case in "ABC")
+    yield f"here B {b} is higher than C {c}, and A {a} is lowest"
+    less = 100.0 * (1.0 - joules["C"] / joules["nominal"])
+    yield f"Case C takes {less:.0f} % less energy than nominal, as in the paper"
 
 
 @pytest.mark.parametrize("page", [actuators, bench, getting_started, legs, losses, model], ids=lambda one: one.__name__)
