@@ -193,7 +193,8 @@ def actuators():
 
     yield (
         f"At 4:1, {teeth(four)} with module {four.gears.module_mm:g} and three planets needs "
-        f"{four.face_width_mm:.0f} mm where Lewis needs {teeth(lewis)} with five planets and {lewis.face_width_mm:.1f} mm"
+        f"{four.face_width_mm:.0f} mm where Lewis needs {teeth(lewis)} with five planets and "
+        f"{lewis.face_width_mm:.1f} mm"
     )
     assert (four.gears.planets, lewis.gears.planets, eight.gears.is_shifted) == (3, 5, True)
     yield f"At 6:1, {teeth(six)} with module {six.gears.module_mm:g} sits in the stator"
