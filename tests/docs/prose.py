@@ -33,7 +33,7 @@ def table(page: str, *titles: str) -> pd.DataFrame:
 
 
 def _numbers(column: pd.Series) -> pd.Series:
-    found = pd.to_numeric(column, errors="coerce")
+    found = pd.to_numeric(column.str.replace(",", ""), errors="coerce")
     return column if found.isna().any() else found
 
 

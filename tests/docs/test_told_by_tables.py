@@ -1,7 +1,7 @@
 """Numbers in running prose that a table or a console block of the pages shows as well: both say the same.
 
 Tables and blocks are made by their commands and compared in CI (``tools/documented.py``). Each function here is named
-after a page of ``docs`` and says its sentences again, with the numbers that the tables give today. Where a sentence is
+after a page and says its sentences again, with the numbers that the tables give today. Where a sentence is
 missing, change it on the page; where its words were changed, change them here.
 """
 
@@ -191,6 +191,36 @@ def model():
     yield f"Case C takes {less:.0f} % less energy than nominal, as in the paper"
 
 
-@pytest.mark.parametrize("page", [actuators, bench, getting_started, legs, losses, model], ids=lambda one: one.__name__)
+def scaling():
+    costs = table("docs/scaling.md", "algorithm", "together, ms").set_index("algorithm")["together, ms"]
+    tasks = table("docs/scaling.md", "task", "sent, bytes").set_index("task").sum(axis=1)
+    one, built = tasks["278 jumps"] / 278, tasks["256 jumps of a design as built"] / 256
+    yield f"A jump therefore takes about {round(one, -2):.0f} bytes, and one as built {round(built, -1):.0f}"
+    yield f"A network of 1 Gbit/s carries {round(1e9 / 8 / built, -5):,.0f} jumps per second"
+    hours = costs * 1e8 / 3.6e6
+    yield f"would take {hours['`surrogate`']:.0f} hours with `surrogate` and {hours['`nsga2`']:.0f} hours with `nsga2`"
+    row = table("docs/scaling.md", "generation", "bytes per row").iloc[-1]
+    yield (
+        f"every study takes {costs['`surrogate`'] * 1e6 / 6e4:.0f} minutes of its coordinator and "
+        f"{row['bytes per row'] * 1e-3:.1f} GB"
+    )
+
+
+def long_run():
+    found = table("benchmarks/long_run.md", "evaluations", "memory, MB")
+    first, last = found.iloc[0], found.iloc[-1]
+    more = last["memory, MB"] - first["memory, MB"]
+    yield f"Memory grows by {100.0 * more / first['memory, MB']:.0f} percent after the first tenth, {more:.0f} MB"
+    sizes = found["bytes each"]
+    yield f"takes {sizes.min():,} to {sizes.max():,} bytes per evaluation in every tenth"
+    faster = 100.0 * (1.0 - last["CPU, ms each"] / first["CPU, ms each"])
+    yield f"The last tenth takes {faster:.0f} percent less time"
+
+
+PAGES = [actuators, bench, getting_started, legs, losses, model, scaling, long_run]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda one: one.__name__)
 def test_the_prose_says_what_the_tables_show(page):
-    assert untold(f"docs/{page.__name__}.md", page()) == []
+    folder = "benchmarks" if page is long_run else "docs"
+    assert untold(f"{folder}/{page.__name__}.md", page()) == []
