@@ -24,6 +24,7 @@ from pareto_monoped.jump.gravity import least_energy_j
 from pareto_monoped.leg import stops
 from pareto_monoped.report import resimulation, trials
 from pareto_monoped.robot.population import robot_arrays
+from pareto_monoped.strength import factors
 from pareto_monoped.uncertainty import samples, settings
 from tests.docs.prose import between, table, untold
 
@@ -33,6 +34,7 @@ RATED, DUTY = MAP.settings.parts.rating, MAP.settings.parts.duty
 PAPER = complete(np.array([case.design.as_array() for case in PAPER_CASES.values()]))
 NOMINAL, A, B, C = range(4)
 LIMITS = {limit.name: limit.most for limit in audit.LIMITS}
+NEEDED = {row.name: row.required for row in factors.TABLE}
 REFERENCE, RIGID, FIT = (load_calibration(name) for name in ("reference", "reference-3", "paper"))
 
 
@@ -103,6 +105,13 @@ SETTINGS = {
         f"{36.0 * FIT.joints.motor_damping_n_m_s_per_rad:.2f} N m s/rad at 6:1), a factor on the mass of both links, "
         f"{FIT.mass.link_mass_scale:.2f}, and the mass of the foot, {FIT.mass.foot_mass_kg:.3f} kg",
         f"kept at the {FIT.mass.base_structure_mass_kg:g} kg",
+        f"Breaking load over the largest pull, at least {NEEDED['chain_breaking']:g}",
+        f"Travel of a bumper over its compression, at least {NEEDED['knee_bumper']:g}",
+        f"against yield, at least {NEEDED['hip_stop_rods']:g} (`strength/stop_seats.py`)",
+        f"The dowels between axle and shank, at least {NEEDED['knee_axle_dowels']:g}",
+        f"All against yield, at least {NEEDED['hip_spline']:g}; bonds at 5 MPa, at least {NEEDED['hip_ring_bond']:g}",
+        f"must not slip, at least {NEEDED['hip_motor_reaction']:g}",
+        f"Stress in the plates over yield, at least {NEEDED['thigh_plate_inner']:g}",
     ],
     "docs/scaling.md": [
         f"robust evaluation ({samples.DEFAULT_SAMPLES} jumps per design)",
