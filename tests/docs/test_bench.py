@@ -123,7 +123,14 @@ def test_what_the_page_tells_of_single_runs_is_in_the_data(bench):
     both = bench.pair(found["7.2:1"], bench.PROPORTIONAL)
     line = found["7.2:1"].driving[-1] * (1.0 - both.slope) + both.offset
     drag = bench.VISCOUS * 6.0**2 * 5.5 * 3000.0 * np.pi / 30.0 / 6.0  # 3000 rpm of the motor, 5.5 N m
+    every = [bench.read(name) for name in bench.RATIOS]
+    reported = [one.load_n_m[one.command_n_m == at] for one in every for at in range(3, 19)]
+    moved = 100.0 * np.array([np.ptp(some) / np.mean(some) for some in reported])
+    assert np.mean(moved < 1.0) > 0.5  # mostly
+    frictions = [bench.brentq(lambda x, y=y: bench.own("7.2:1", x) ** 2 - both.slope - y, 0.0, 2.0) for y in (0, 0.01)]
     said = [
+        f"what the braking drive reports moves by {moved.max():.0f} percent at most, mostly by less than 1",
+        f"by one percent, and the friction coefficient by {frictions[0] - frictions[1]:.2f}",
         f"load cell shows {between(100.0 * runs)} percent of the commanded torque",
         f"the braking motor takes in {between(taken, 1)} times what the load cell reads",
         f"jumps from {small[5]:.2f} to {small[6]:.2f} of the command",

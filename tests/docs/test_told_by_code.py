@@ -27,6 +27,7 @@ from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.strength import factors
 from pareto_monoped.uncertainty import samples, settings
 from tests.docs.prose import between, table, untold
+from tests.docs.scripts import imported
 
 ROOT = Path(__file__).parents[2]
 MAP = map_for("VT8020")
@@ -224,6 +225,13 @@ def actuators():
     yield f"The VT8020's estimate is {1e4 * load_motor('VT8020').rotor_inertia_kg_m2:.2f}e-4 kg m2"
 
 
+def losses():
+    with imported("losses_front") as script:
+        shares = [one.joints.motor_damping_share_s_per_rad for one in script.settings().values()]
+    yield f"has gears that lose {load_calibration('printed').drive.gear_loss:g} times as much under load"
+    yield f"a public leg rubs {shares[2] / shares[0]:.0f} times as much at speed"
+
+
 def model():
     usual, rigid = jumps(), jumps(RIGID)
     armature = jumps(replace(RIGID, joints=replace(RIGID.joints, rotors="armature")))
@@ -286,6 +294,6 @@ def python():
     yield f"legs with the U8 weigh about {spans[0]} kg, those with the VT8020, the default, {spans[1]} kg"
 
 
-@pytest.mark.parametrize("page", [actuators, model, python], ids=lambda one: one.__name__)
+@pytest.mark.parametrize("page", [actuators, losses, model, python], ids=lambda one: one.__name__)
 def test_figures_are_those_that_the_package_computes(page):
     assert untold(f"docs/{page.__name__}.md", page()) == []
