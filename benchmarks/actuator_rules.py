@@ -74,6 +74,14 @@ def _changes(s: ActuatorSettings) -> Iterator[tuple[str, ActuatorSettings]]:
         yield f"{text}, for all gears", steel(grade)
     yield "no reversed bending of the planets", rating(reversed_bending_factor=1.0)
     yield "no reversed torque in the duty", duty(reversed=(False,) * len(s.parts.duty.torque_shares))
+    for share in (1.5, 2.0, 2.5):
+        loads = s.parts.duty
+        struck = duty(
+            torque_shares=(*loads.torque_shares, share),
+            reversed=(*loads.reversed, False),
+            output_angles_rad=(*loads.output_angles_rad, 0.1),
+        )
+        yield f"strikes of {share:g} times the peak torque in the duty, over 0.1 rad", struck
     yield "planets not crowned", rating(planet_crowning_um=0.0)
     unthinned = replace(s.parts.gears, backlash_modules=0.0, backlash_least_mm=0.0)
     yield "teeth drawn without thinning", parts(gears=unthinned)

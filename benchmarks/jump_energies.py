@@ -131,9 +131,10 @@ def _print_audits(db: Path) -> None:
         "quarter step": "quarter_step",
         "control period a quarter": "control_period",
     }
-    print(f"\n{db.name}: {len(designs)} of {len(front)} designs of the front audited in full")
+    print()
     print(f"| | {' | '.join(kinds)} | balance off |")
     print("|---" * 6 + "|")
+    print(f"| designs | {len(designs)} of {len(front)} | | | | |")
     for text, ending, scale in (("height mm", "height_m", 1e3), ("energy %", "energy", 1e2)):
         cells = [_two(scale * getattr(audits, f"{kind}_{ending}")) for kind in kinds.values()]
         balance = _two(1e2 * audits.energy_balance_error) if ending == "energy" else ""

@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 
+from tests.docs.prose import between, untold
 from tests.docs.scripts import ROOT, imported, rows
 
 PAGE = (ROOT / "docs" / "bench.md").read_text(encoding="utf-8")
@@ -108,6 +109,38 @@ def test_the_example_of_the_page_is_that_of_the_data(bench):
     assert f"takes {-slow.load_w:.1f} W from its bus at 10 rpm and gives {fast.load_w:.1f} W back at 50 rpm" in text
     assert f"The {more:.1f} W between come through the shaft, at {faster:.2f} rad/s more" in text
     assert f"rad/s more: {more / faster:.1f} N m, where the load cell reads {runs.cell_n_m[-5:].mean():.1f}" in text
+
+
+def test_what_the_page_tells_of_single_runs_is_in_the_data(bench):
+    """What its tables show in part only: ``test_told_by_tables`` has the others."""
+    found = {name: bench.torques(bench.read(name)) for name in bench.RATIOS}
+    runs = np.concatenate([one.cell_n_m / one.command_n_m for one in map(bench.read, bench.RATIOS)])
+    taken = np.concatenate([(one.braking / one.cell)[one.command >= 6] for one in found.values()])
+    small, other = ((one.cell / one.command) for one in found.values())
+    late = bench.read("7.2:1")
+    late = late.cell_n_m[late.command_n_m == 14] / 14.0
+    losses = found["7.2:1"].driving - found["7.2:1"].braking
+    both = bench.pair(found["7.2:1"], bench.PROPORTIONAL)
+    line = found["7.2:1"].driving[-1] * (1.0 - both.slope) + both.offset
+    drag = bench.VISCOUS * 6.0**2 * 5.5 * 3000.0 * np.pi / 30.0 / 6.0  # 3000 rpm of the motor, 5.5 N m
+    every = [bench.read(name) for name in bench.RATIOS]
+    reported = [one.load_n_m[one.command_n_m == at] for one in every for at in range(3, 19)]
+    moved = 100.0 * np.array([np.ptp(some) / np.mean(some) for some in reported])
+    assert np.mean(moved < 1.0) > 0.5  # mostly
+    frictions = [bench.brentq(lambda x, y=y: bench.own("7.2:1", x) ** 2 - both.slope - y, 0.0, 2.0) for y in (0, 0.01)]
+    said = [
+        f"what the braking drive reports moves by {moved.max():.0f} percent at most, mostly by less than 1",
+        f"by one percent, and the friction coefficient by {frictions[0] - frictions[1]:.2f}",
+        f"load cell shows {between(100.0 * runs)} percent of the commanded torque",
+        f"the braking motor takes in {between(taken, 1)} times what the load cell reads",
+        f"jumps from {small[5]:.2f} to {small[6]:.2f} of the command",
+        f"within the runs at 14 N m it falls from {late[0]:.2f} to {late[2]:.2f}",
+        f"of the 14:1 one jumps from {other[10]:.2f} to {other[11]:.2f} at 12 N m",
+        f"Up to 4 N m, the load cell reads {between(small[:4], 2)} of the command",
+        f"up to {losses.max():.1f} instead of {line:.1f} N m",
+        f"{drag:.1f} N m at that speed, {100.0 * drag / 33.0:.1f} percent",
+    ]
+    assert untold("docs/bench.md", said) == []
 
 
 def test_the_figure_is_drawn(bench, tmp_path):

@@ -1,0 +1,299 @@
+"""Numbers in running prose that no table shows: settings that the code has, and figures that the package computes."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tests.test_architecture as house
+from pareto_monoped.actuator.motors import load_motor
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.analysis import alternatives, at_bounds, choices, compare, robustness, sensitivity
+from pareto_monoped.campaign import coordinator, grid, page
+from pareto_monoped.compute import chunks
+from pareto_monoped.definition.goals import MIN_HEIGHT_M
+from pareto_monoped.definition.study import Study
+from pareto_monoped.design import CONTROL, LOWER, NAMES, PAPER_CASES, UPPER, columns, complete
+from pareto_monoped.jump import audit, peers, screen
+from pareto_monoped.jump.balance import balanced
+from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.evaluate import Evaluator
+from pareto_monoped.jump.gravity import least_energy_j
+from pareto_monoped.leg import stops
+from pareto_monoped.report import resimulation, trials
+from pareto_monoped.robot.population import robot_arrays
+from pareto_monoped.strength import factors
+from pareto_monoped.uncertainty import samples, settings
+from tests.docs.prose import between, table, untold
+from tests.docs.scripts import imported
+
+ROOT = Path(__file__).parents[2]
+MAP = map_for("VT8020")
+RATED, DUTY = MAP.settings.parts.rating, MAP.settings.parts.duty
+PAPER = complete(np.array([case.design.as_array() for case in PAPER_CASES.values()]))
+NOMINAL, A, B, C = range(4)
+LIMITS = {limit.name: limit.most for limit in audit.LIMITS}
+NEEDED = {row.name: row.required for row in factors.TABLE}
+REFERENCE, RIGID, FIT = (load_calibration(name) for name in ("reference", "reference-3", "paper"))
+
+
+def mm(metres):
+    return f"{1e3 * metres:g} mm"
+
+
+def percent(share):
+    return f"{100.0 * share:g} percent"
+
+
+def told(ranges):
+    """A range in the words of docs/studies.md."""
+    low, high = (round(100.0 * end) for end in (ranges.lower, ranges.upper))
+    if low == -high:
+        return f"{high} percent more or less"
+    return f"{-low} percent less to {f'{high} percent more' if high else 'as designed'}"
+
+
+SETTINGS = {
+    "docs/actuators.md": [
+        f"thinner by {MAP.settings.parts.gears.backlash_modules:g} modules each",
+        f"at least by {MAP.settings.parts.gears.backlash_least_mm:g} mm",
+        f"may bring {RATED.overload_factor:g} times the peak torque once",
+        f"safety factors, $S_H$ {RATED.flank_safety:g} and $S_F$ {RATED.root_safety:g}",
+        f"stand back by {RATED.planet_crowning_um:g} um",
+        f"with {DUTY.torque_shares[2]:g} of it in the other direction (flexion and swing). {DUTY.jumps:,.0f} jumps",
+        f"needles lose 0.1 percent of the power, with a friction coefficient of "
+        f"{MAP.settings.parts.needles.friction_coefficient:g}",
+        f"The friction coefficient of {MAP.settings.materials.bush_bronze.friction_coefficient:g} is the middle",
+    ],
+    "docs/architecture.md": [
+        f"at most {house.MOST_MODULES} modules, {house.MOST_IN_A_ROOM} in a folder, {house.MOST_LINES} lines in each"
+    ],
+    "docs/choosing.md": [
+        f"takes more than {choices.DEAR} times the least stored for its height",
+        f"`robust` jumps {samples.DEFAULT_SAMPLES} times with each design",
+        f"costs {1 + Study.from_toml(ROOT / 'studies' / 'robust.toml').uncertainty.samples} jumps instead of one",
+    ],
+    "docs/compare.md": [
+        f"From {1e3 * compare._BEFORE_END_S:g} ms before the currents end",
+        f"At least {compare._FEWEST} samples must remain",
+        f"with steps of {1e3 * compare._STEP_S:g} ms",
+        f"{compare._STUDENT} standard deviations",
+    ],
+    "docs/getting_started.md": [f"less than {choices.DEAR} times the least battery energy stored"],
+    "docs/model.md": [
+        f"base at {PAPER_CASES['C'].design.start_height_m:g} m (`start_height_m`)",
+        f"during the period, {1e3 * REFERENCE.simulation.control_period_s:g} ms under `reference`",
+        f"$\\omega_s$ = {REFERENCE.drive.loss_speed_rad_per_s:g} rad/s",
+        f"chain efficiency ({REFERENCE.drive.chain_efficiency:g})",
+        f"`gear_loss` (1, {load_calibration('printed').drive.gear_loss:g} under `printed`)",
+        f"$K$ = {1e-3 * REFERENCE.contact.stiffness_n_per_m:g} kN/m, $C$ = {REFERENCE.contact.damping_n_s_per_m:g} "
+        f"N s/m, $w$ = {mm(REFERENCE.contact.width_m)}, $D$ = {REFERENCE.contact.impedance:g}:",
+        f"`slip_ratio` $p$ = {REFERENCE.contact.slip_ratio:g} times",
+        f"The Coulomb torque, {RIGID.joints.friction_n_m:g} N m under `reference-3`",
+        f"joint friction of {RIGID.joints.friction_n_m:g} N m and {RIGID.joints.damping_n_m_s_per_rad:g} N m s/rad",
+        f"on a lever of {stops._KNEE_LEVER:g} mm at the knee",
+        f"Those of the knee, {stops._KNEE_BUMPER.diameter_mm:g} mm thick",
+        f"$\\zeta$ = {REFERENCE.drive.drive_damping_ratio:g}, the least",
+        f"closes to {100.0 * LIMITS['energy_balance_error']:g} %, its height and energy change by at most "
+        f"{mm(LIMITS['spread_height_m'])} and {100.0 * LIMITS['spread_energy']:g} % under perturbations of "
+        f"{audit.PERTURBATION:.0e} ({audit.SPREAD_PERCENTILE:.0f}th percentile".replace("e-06", "e-6"),
+        f"by at most {mm(LIMITS['half_step_height_m'])} and {100.0 * LIMITS['half_step_energy']:g} % with the step",
+        f"differ by more than {1e6 * audit.SAME:g} um or one millionth",
+        f"`rail_friction_n` per carriage, {load_calibration('stand').stand.rail_friction_n:g} N",
+        f"shaft, {FIT.joints.motor_damping_n_m_s_per_rad:.4f} N m s/rad (multiplied by the ratio squared at the joint: "
+        f"{36.0 * FIT.joints.motor_damping_n_m_s_per_rad:.2f} N m s/rad at 6:1), a factor on the mass of both links, "
+        f"{FIT.mass.link_mass_scale:.2f}, and the mass of the foot, {FIT.mass.foot_mass_kg:.3f} kg",
+        f"kept at the {FIT.mass.base_structure_mass_kg:g} kg",
+        f"Breaking load over the largest pull, at least {NEEDED['chain_breaking']:g}",
+        f"Travel of a bumper over its compression, at least {NEEDED['knee_bumper']:g}",
+        f"against yield, at least {NEEDED['hip_stop_rods']:g} (`strength/stop_seats.py`)",
+        f"The dowels between axle and shank, at least {NEEDED['knee_axle_dowels']:g}",
+        f"All against yield, at least {NEEDED['hip_spline']:g}; bonds at 5 MPa, at least {NEEDED['hip_ring_bond']:g}",
+        f"must not slip, at least {NEEDED['hip_motor_reaction']:g}",
+        f"Stress in the plates over yield, at least {NEEDED['thigh_plate_inner']:g}",
+    ],
+    "docs/scaling.md": [
+        f"robust evaluation ({samples.DEFAULT_SAMPLES} jumps per design)",
+        f"or {robustness._SHARED} designs of `robust`, is stored when it is complete",
+        {16: "Up to sixteen such groups"}[chunks.AT_ONCE],
+        {0.25: "at least a quarter of a second"}[chunks.LEAST_TASK_S],
+        {16: "all measures of sixteen probe designs"}[peers._DRAWN + len(PAPER_CASES)],
+    ],
+    "docs/studies.md": [
+        f"At most {percent(settings.MOST_FAILED)} may fail",
+        f"A design must reach {MIN_HEIGHT_M:g} m",
+        f"perturbations of {audit.PERTURBATION:.0e}".replace("e-06", "e-6"),
+        f"keep within {mm(screen.CLEAR['half_step_height_m'] * LIMITS['half_step_height_m'])}, "
+        f"{100.0 * screen.CLEAR['half_step_energy'] * LIMITS['half_step_energy']:g} % and",
+        f"stay below {percent(audit.CLEAR_SPREAD)} of the limits, and those with the step halved below "
+        f"{percent(audit.CLEAR_HALF_STEP)}",
+        f"takes more than {choices.DEAR} times the least battery energy stored for its height",
+        f"bounds of variables within {percent(at_bounds._AT)} of their range, constraints of the study within "
+        f"{percent(at_bounds._BINDING_AT)}",
+        f"worse by at most {percent(alternatives.TOLERANCE)} (`--tolerance`)",
+        f"The {samples.DEFAULT_SAMPLES} samples of a design (`--samples`, a power of two)",
+        {4: "Results are stored after every four designs"}[robustness._CHUNK],
+        f"fail in more than {percent(settings.MOST_FAILED)} of their jumps",
+        f"by {percent(sensitivity.WITHIN)} of their ranges to either side (`--within`)",
+        f"A campaign has {grid.MOST_STUDIES:,} studies at most",
+        {10.0: "one that still takes longer than ten seconds"}[coordinator.WORTH_S],
+        {8: "Of more than eight groups, the charts begin with the eight"}[page.MOST_CURVES],
+    ],
+    "reports/README.md": [
+        f"A page holds at most {trials.MOST_ROWS:,} trials",
+        f"up to {resimulation.MOST_FRAMES} moments",
+        f"take at most {1e-6 * resimulation.JUMPS_BYTES:g} MB",
+    ],
+}
+
+
+@pytest.mark.parametrize("page", SETTINGS)
+def test_settings_are_told_as_the_code_has_them(page):
+    assert untold(page, SETTINGS[page]) == []
+
+
+def test_ranges_of_built_robots_are_those_of_the_shipped_file():
+    shipped = settings.load_uncertainty().where(stand=True)
+    rows = table("docs/studies.md", "quantity", "range").set_index("quantity")["range"]
+    names = {
+        "mass of base, thigh and shank, each": "masses",
+        "peak torque of each motor": "peak_torque",
+        "Coulomb friction of the joints": "friction",
+        "viscous friction of the joints": "damping",
+        "gains K, C and T, each": "gains",
+        "battery voltage, which moves the no-load speed": "battery_voltage",
+        "what gearboxes lose under load": "gear_loss",
+        "what the chain loses": "chain_loss",
+        "resistance of the warm windings": "winding_resistance",
+        "inertia of what turns at the motors' speed": "rotor_inertia",
+        "rebound of the bumpers": "rebound",
+        "on a [test stand](model.md#on-the-test-stand): what the base lifts": "stand_mass",
+        "on a test stand: friction of the rails": "rail_friction",
+    }
+    for row, name in names.items():
+        assert rows[row] == told(getattr(shipped, name)), row
+    assert rows["stiffness of the end stops, of the foot"] == f"{told(shipped.stop_stiffness)}, each"
+    assert shipped.foot_stiffness.upper == shipped.stop_stiffness.upper
+    assert rows["length of thigh and shank, each"] == f"{mm(shipped.link_length_m.upper)} more or less"
+    late = shipped.delay_s
+    assert rows["delay from measuring to acting"].startswith(f"{1e3 * late.lower:g} to {1e3 * late.upper:g} ms")
+
+
+@cache
+def jumps(calibration=REFERENCE, **changed):
+    """Of the paper's designs, with some variables changed."""
+    designs = PAPER.copy()
+    for name, value in changed.items():
+        designs[:, NAMES.index(name)] = value
+    return Evaluator(MAP, calibration)(designs)
+
+
+def actuators():
+    four, lewis, six, eight = (
+        MAP.lookup(4.0),
+        map_for("VT8020", "paper").lookup(4.0),
+        MAP.lookup(6.0),
+        MAP.lookup(7.9),
+    )
+
+    def teeth(one):
+        return f"{one.gears.sun_teeth:.0f}/{one.gears.planet_teeth:.0f}/{one.gears.ring_teeth:.0f}"
+
+    yield (
+        f"At 4:1, {teeth(four)} with module {four.gears.module_mm:g} and three planets needs "
+        f"{four.face_width_mm:.0f} mm where Lewis needs {teeth(lewis)} with five planets and "
+        f"{lewis.face_width_mm:.1f} mm"
+    )
+    assert (four.gears.planets, lewis.gears.planets, eight.gears.is_shifted) == (3, 5, True)
+    yield f"At 6:1, {teeth(six)} with module {six.gears.module_mm:g} sits in the stator"
+    yield f"The paper's {teeth(eight)} with module {eight.gears.module_mm:g} wins 7.9:1 with shifted teeth"
+    empty = [f"[{one.ratio_low:.1f}, {one.ratio_high:.1f})" for one in MAP.entries if not one.actuator]
+    yield f"Up to 9.1:1, only {' and '.join(empty[:2])} are empty"
+    assert float(empty[2][1:4]) > 9.1
+    peaks = np.array([MAP.lookup(ratio).peak_torque_n_m for ratio in PAPER[:, NAMES.index("knee_ratio")]])
+    struck = jumps().peak_gear_torque_knee_n_m / peaks
+    yield (
+        f"strike theirs with {struck[C]:.1f} (Case C), {struck[B]:.1f} (Case B), {struck[A]:.1f} (Case A) and "
+        f"{struck[NOMINAL]:.1f} times (nominal) the peak torque"
+    )
+    eased = jumps(knee_release_rad=0.4)
+    less = eased.peak_gear_torque_knee_n_m / peaks
+    yield f"for Case C, 0.4 rad brings the {struck[C]:.1f} times down to {less[C]:.1f} without loss of height"
+    assert eased.height_m[C] >= jumps().height_m[C]
+    yield f"The VT8020's estimate is {1e4 * load_motor('VT8020').rotor_inertia_kg_m2:.2f}e-4 kg m2"
+
+
+def losses():
+    with imported("losses_front") as script:
+        shares = [one.joints.motor_damping_share_s_per_rad for one in script.settings().values()]
+    yield f"has gears that lose {load_calibration('printed').drive.gear_loss:g} times as much under load"
+    yield f"a public leg rubs {shares[2] / shares[0]:.0f} times as much at speed"
+
+
+def model():
+    usual, rigid = jumps(), jumps(RIGID)
+    armature = jumps(replace(RIGID, joints=replace(RIGID.joints, rotors="armature")))
+    yield f"jump {between(1e3 * (rigid.height_m - armature.height_m))} mm higher with rigid drives"
+    eased = jumps(knee_release_rad=0.4)
+    less, higher = 100.0 * (1.0 - eased.energy_j / usual.energy_j), 1e3 * (eased.height_m - usual.height_m)
+    yield f"spend {between(less)} percent less energy and jump {between(higher)} mm higher"
+    stands = usual.height_m - usual.above_standing_m
+    yield (
+        f"Case C reaches {usual.height_m[C]:.3f} m, of which it stands {stands[C]:.3f} m, and its centre of mass "
+        f"rises by {usual.rise_m[C]:.3f} m"
+    )
+    torque = usual.peak_gear_torque_knee_n_m[NOMINAL]
+    peak = MAP.lookup(PAPER_CASES["nominal"].design.knee_ratio).peak_torque_n_m
+    yield (
+        f"transmits {torque:.0f} N m, {torque / peak:.1f} "
+        f"times its peak torque, and its chain {1e-3 * usual.peak_chain_tension_n[NOMINAL]:.1f} kN"
+    )
+    robots = robot_arrays(PAPER, MAP, REFERENCE.mass)
+    start = PAPER[:, NAMES.index("start_height_m")]
+    below = [
+        100.0 * (1.0 - least_energy_j(robots, REFERENCE, heights) / (usual.mass_kg * 9.81 * (heights - start)))
+        for heights in (usual.height_m, np.full(4, 0.7))
+    ]
+    there, low = map(between, below)
+    yield f"is {there} percent below it at the heights that they reach, and {low} percent at 0.7 m"
+    euros = [f"{round(euro, -2):,.0f}" for euro in usual.cost_eur]
+    yield f"thus costs {euros[B]} EUR, Cases A and C {euros[A]} and {euros[C]}"
+    ratios = [one.actuator.ratio for one in MAP.entries if one.actuator]
+    every = np.repeat(PAPER[:1], 2 * len(ratios), axis=0)
+    every[:, NAMES.index("knee_ratio")] = every[:, NAMES.index("hip_ratio")] = ratios * 2
+    every[:, NAMES.index("thigh_length_m")] = np.repeat((LOWER[0], UPPER[0]), len(ratios))  # of the chain
+    hip, knee = robot_arrays(every, MAP, REFERENCE.mass).drive_stiffness_n_m_per_rad.T
+    spans = [f"{round(min(k), -2):,.0f} to {round(max(k), -2):,.0f}" for k in (knee, hip)]
+    yield f"With the VT8020 this is {spans[0]} N m/rad at the knee and {spans[1]} at the hip"
+    yield f"{robots.stand_mass_kg[0]:.3f} kg with the VT8020"
+    random = complete(np.random.default_rng(0).uniform(LOWER, UPPER, (150, len(LOWER))))
+    simulation = replace(REFERENCE.simulation, timestep_s=0.1 * REFERENCE.simulation.timestep_s)
+    fine = Evaluator(MAP, replace(REFERENCE, simulation=simulation))(random).rise_m
+    more = 1e3 * (fine - Evaluator(MAP, REFERENCE)(random).rise_m)
+    yield (
+        f"rises of 150 random designs are {np.median(more):.1f} mm larger in the median and {more.max():.1f} mm at most"
+    )
+    robots = robot_arrays(random[:100], MAP, REFERENCE.mass)
+    error = balanced(robots, columns(random[:100], CONTROL), REFERENCE).error
+    yield f"The energy balance is open by {100.0 * error.max():.2f} percent at most on 100 random designs"
+
+
+def python():
+    spans = []
+    for name in ("U8", "VT8020"):
+        found = map_for(name)
+        ratios = [one.actuator.ratio for one in found.entries if one.actuator and one.ratio_low < UPPER[2] + 0.05]
+        both = np.array(
+            [(length, length, one, other) for length in (LOWER[0], UPPER[0]) for one in ratios for other in ratios]
+        )
+        designs = np.repeat(PAPER[:1], len(both), axis=0)
+        designs[:, :4] = both
+        spans.append(between(robot_arrays(designs, found).body_mass_kg.sum(axis=1), 1))
+    yield f"legs with the U8 weigh about {spans[0]} kg, those with the VT8020, the default, {spans[1]} kg"
+
+
+@pytest.mark.parametrize("page", [actuators, losses, model, python], ids=lambda one: one.__name__)
+def test_figures_are_those_that_the_package_computes(page):
+    assert untold(f"docs/{page.__name__}.md", page()) == []

@@ -1,0 +1,226 @@
+"""Numbers in running prose that a table or a console block of the pages shows as well: both say the same.
+
+Tables and blocks are made by their commands and compared in CI (``tools/documented.py``). Each function here is named
+after a page and says its sentences again, with the numbers that the tables give today. Where a sentence is
+missing, change it on the page; where its words were changed, change them here.
+"""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from tests.docs.prose import between, firsts, shown, table, untold
+from tests.docs.scripts import imported
+
+
+def actuators():
+    maps = table("docs/actuators.md", "motor", "gearboxes under `paper`")
+    changes = table("docs/actuators.md", "change", "gearboxes").set_index("change")
+    friction = table("docs/bench.md", "friction coefficient", "0.3").iloc[0]
+    printed = table("docs/bench.md", "what", "predicted").set_index("what").measured["7.2:1, friction coefficient"]
+    ours = maps.set_index("motor")["under `iso6336`"]["VT8020"]
+    grams = changes["mass, mean change"]["no profile shift"].removeprefix("+")
+    yield f"without shift there are {changes.gearboxes['no profile shift']} gearboxes, {grams} heavier"
+    winners = (
+        table("docs/actuators.md", "of the winners of six motors").set_index("of the winners of six motors").figure
+    )
+
+    def share(row):
+        some, of_all = (float(number) for number in re.findall(r"(\d+) of (\d+)", winners[row])[0])
+        return some / of_all
+
+    assert winners["of module 0.5 mm"].endswith(f" of {maps['under `iso6336`'].sum()}")
+    assert share("with profile shift, of the VT8020") > 0.5  # most
+    assert share("ring in the planets' roots with standard tips") == pytest.approx(2 / 3, abs=0.05)
+    assert share("the same with straight planets") == pytest.approx(0.8, abs=0.05)
+    crowned = share("$K_{H\\beta}$ at the sun")
+    yield f"above 2 in one of {1.0 / crowned:.0f} gearboxes instead of four of five"
+    yield f"none of their {maps['gearboxes under `paper`'].sum()} winners overlaps"
+    yield f"the map of the VT8020, which has {ours} gearboxes"
+    yield (
+        f"lost {friction['measured'].split()[0]} percent under load together, which a friction coefficient of "
+        f"{printed.split(',')[0]} in the teeth explains"
+    )
+    yield f"configuration gives {friction['0.3']} percent for two"
+    yield f"in a closed case, the U8 holds it for {shown('docs/actuators.md', 'continuous torque')[-1]:.0f} s"
+
+
+def bench():
+    cells = table("docs/bench.md", "actuator", "load cell")
+    found = table("docs/bench.md", "what", "predicted").set_index("what")
+    losses, electrical = (
+        table("docs/bench.md", "friction coefficient"),
+        table("docs/bench.md", "actuator", "voltage drop, V"),
+    )
+    machined = table("docs/bench.md", "ratio", "together, %")["together, %"]
+    drops, ohms = firsts(electrical["voltage drop, V"]), firsts(electrical["resistance, ohm"])
+    more = 100.0 * (firsts(electrical["torque over command"]) - 1.0)
+    over = ohms / electrical["data sheet, ohm"]
+    heavy = cells[cells["commanded, N m"] >= 4]["load cell over braking motor"]
+    yield f"lose {losses['measured'][0]} percent under load and " + (
+        f"{found.measured['7.2:1, friction of both without load, N m']} N m without"
+    )
+    coefficient = found.measured["7.2:1, friction coefficient"].split(",")[0]
+    yield f"a friction coefficient of {coefficient} in the teeth"
+    yield f"both motors make {more[0]:.0f} and {more[1]:.0f} percent *more*"
+    yield f"the drives take {drops.mean():.1f} V times the motor's current"
+    yield f"one winding has {over[0]:.2f} times the resistance of its data sheet"
+    yield f"The package's lose {between(machined, 1)} percent at the peak torque"
+    yield f"The package's {between(machined, 1)} percent lie within 1.5 to 5"
+    yield f"the load cell reads {between(heavy, 2)} of the braking motor's torque from 4 N m on"
+    yield f"with 1.6 the windings would have {1.6 * over[0]:.1f} and {1.6 * over[1]:.1f} times the resistance"
+    yield f"The MN8014 has {over[0]:.2f} times its data sheet's {electrical['data sheet, ohm'][0]}"
+    sessions = [found.loc[f"14:1, session {one}, with that coefficient: loss of both under load, %"] for one in "AB"]
+    loss, told = firsts(one.measured for one in sessions), [float(x) for x in sessions[0].predicted.split(" to ")]
+    yield f"the sessions below differ by {loss[0] - loss[1]:.0f} percent"
+    yield f"The 14:1 actuator loses {loss[1] / told[1]:.1f} to {loss[0] / told[0]:.1f} times what the coefficient"
+    idle = found.loc["7.2:1, friction of both without load, N m"]
+    yield f"the first is {float(idle.predicted) / float(idle.measured.split()[0]):.1f} times too large for one"
+
+
+def getting_started():
+    high, stands, rise = (shown("docs/getting_started.md", "paper's Case C, simulated here")[k] for k in (0, 2, 3))
+    one = shown("docs/getting_started.md", "0.9 m")
+    yield f"of Case C's {high:.3f} m, {stands:.3f} m is the base"
+    yield f"its centre of mass rises by {rise:.3f} m"
+    yield f"A knee gearbox of {one[7]:.2f}:1 is heavier"
+    yield f"At 0.9 m, the design of least mechanical energy takes {one[8]:.0f} percent more from the battery"
+
+
+def legs():
+    series = table("docs/legs.md", "series", "as given, 5 to 95 %").set_index(["series", "quantity"])
+    terms = table("docs/legs.md", "drives", "term", "fitted on").set_index(["drives", "term", "fitted on"]).sort_index()
+    speeds = series.xs("take-off, m/s", level="quantity")
+    given, clocked = firsts(speeds["as given, 5 to 95 %"]), firsts(speeds["measured"])
+    with imported("rail_legs") as script:
+        encoders = script.ENCODERS
+    off = {key: float(cell) for key, cell in series["error, %"].items() if cell != "fitted"}
+    yield f"take-off speeds are {between(100.0 * (given / clocked - 1.0))} percent too high"
+    second = max(abs(off[2, "take-off, m/s"]), abs(off[2, "apex of the hip, m"]))
+    yield (
+        f"take-off speed and apex of series 2 are within {math.ceil(second)} percent, and the apex of series 1 within "
+        f"{math.ceil(abs(off[1, 'apex of the hip, m']))}."
+    )
+    first = firsts(speeds["fitted, 5 to 95 %"])[0]
+    yield (
+        f"series 1 is {-off[1, 'take-off, m/s']:.0f} percent below that by flight time and "
+        f"{100.0 * (1.0 - first / encoders[0]):.0f} percent below that by the same log's encoders"
+    )
+    apart = clocked - np.array(encoders)
+    yield f"differ by {apart[0]:.2f} m/s there, and by {apart[1:].max():.2f} m/s at most in the others"
+    means, times = ([f"{speed:.2f}" for speed in speeds] for speeds in (encoders, clocked))
+    yield f"is {', '.join(means[:2])} and {means[2]} m/s in the mean of the hops"
+    yield f"where flight times say {', '.join(times[:2])} and {times[2]}"
+    misses = [
+        max(abs(firsts([cell])[0]) for cell in row[-2:])  # take-off of series 2 and 3
+        for (drives, term, _), row in zip(terms.index, terms.to_numpy(), strict=True)
+        if drives == "elastic" and term != "damping"
+    ]
+    yield f"miss the take-off speed of series 2 or 3 by {between(misses)} percent"
+    yield f"Push times of series 2 and 3 are {off[2, 'push, s']:.0f} and {off[3, 'push, s']:.0f} percent too long"
+    damping = firsts(terms.loc[("elastic", "damping")]["value"])
+    yield (
+        f"damping is the same within {math.ceil(100.0 * abs(damping[2] / damping[1] - 1.0))} percent, "
+        f"{damping[1:].mean():.2f} N m s/rad. Fitted to the flight time of series 1 it is {damping[0]:.2f}"
+    )
+    rigid = firsts([terms.loc[("rigid", "damping", 3)].iloc[2]])[0]
+    yield f"with rigid ones, what fits series 3 misses series 2 by {abs(rigid):.0f} percent"
+
+
+def losses():
+    found = table("docs/losses.md", "losses", "hip ratio").set_index(["losses", "height, m"])
+    knees, tops = (
+        {name: row for (name, at), row in found.iterrows() if at.startswith(start)} for start in ("knee", "highest")
+    )
+    peaks, heights = (
+        {name: float(at.split()[1]) for name, at in found.index if at.startswith(start)}
+        for start in ("highest", "knee")
+    )
+
+    def more(setting, at, column="energy, J"):
+        return 100.0 * (float(found[column][setting, at]) / float(found[column]["machined", at]) - 1.0)
+
+    printed, rubbing = [more("printed", at) for at in ("0.7", "0.9", "1.1")], "as the public leg"
+    yield f"Printed gears cost {between(printed)} percent more mechanical energy at one height"
+    assert knees["printed"]["knee ratio"] == knees["machined"]["knee ratio"]
+    yield f"is the same, and its height moves by {1e3 * abs(heights['printed'] - heights['machined']):.0f} mm"
+    battery = [more(rubbing, at, "from the battery, J") for at in ("0.9", "1.1")]
+    yield (
+        f"0.9 m costs {more(rubbing, '0.9'):.0f} percent more and 1.1 m {more(rubbing, '1.1'):.0f} percent more, "
+        f"{battery[0]:.0f} and {battery[1]:.0f} percent more from the battery"
+    )
+    dearer = float(tops[rubbing]["energy, J"]) / float(tops["machined"]["energy, J"]) - 1.0
+    yield (
+        f"The highest jump is {1e3 * (peaks['machined'] - peaks[rubbing]):.0f} mm lower and takes "
+        f"{100.0 * dearer:.0f} percent more"
+    )
+    yield f"the knee's ratio falls from {knees['machined']['knee ratio']} to {knees[rubbing]['knee ratio']}"
+
+
+def model():
+    def thirds(row, column):
+        return [float(x) for x in row.iloc[column].split(" / ")]
+
+    steps = table("docs/model.md", "integrator", "speed").set_index(["integrator", "step ms"])
+    assert steps["speed"]["RK4", 2] == pytest.approx(0.5, abs=0.1)  # half as fast
+    assert steps["speed"]["Euler", 2] == pytest.approx(2.0, abs=0.2)  # nearly twice
+    usual = steps.loc[("Euler", 1)]
+    yield f"the error of the step, {thirds(usual, 3)[1]:.2f} mm and {thirds(usual, 4)[1]:.2f} percent"
+    reads = table("docs/model.md", "controller reads").set_index("controller reads").loc["the state"]
+    yield f"takes {thirds(reads, 1)[0]:.1f} percent less energy than a converged"
+    stop = table("docs/model.md", "stop", "w, rad").iloc[:, 4:]
+    full, mean = stop.max()
+    yield f"off by at most {full} percent of the torque at the full travel, and by {mean} percent in the mean"
+    jumps = table("docs/model.md", "design", "with", "chain N").set_index(["with", "design"])
+    before, after = jumps.loc["`reference-3`"], jumps.loc["friction: `reference`"]
+    higher = 1e3 * (after["height m"] - before["height m"]).abs().max()
+    harder = between(after["chain N"] / before["chain N"], 1)
+    yield f"pulls {harder} times as hard as with rigid drives, while heights change by {higher:.0f} mm"
+    closed = [float(cell.split()[0]) for cell in table("docs/model.md", "case", "open")["open"]]
+    yield f"the balance closes to {max(closed):.2f} % on the paper's designs"
+    fit = table("docs/model.md", "case", "paper", "5 to 95 %").set_index("case")
+    off = max(abs(float(cell.strip("%"))) for column in (3, 7) for cell in fit.iloc[:, column - 1])
+    yield f"All eight numbers are within {off} %"
+    heights, joules = fit["height m"], fit["energy J"]
+    assert heights["A"] < heights["C"] < heights["B"]
+    a, b, c = (f"({heights[case]:.3f} m)" for case in "ABC")
+    yield f"here B {b} is higher than C {c}, and A {a} is lowest"
+    less = 100.0 * (1.0 - joules["C"] / joules["nominal"])
+    yield f"Case C takes {less:.0f} % less energy than nominal, as in the paper"
+
+
+def scaling():
+    costs = table("docs/scaling.md", "algorithm", "together, ms").set_index("algorithm")["together, ms"]
+    tasks = table("docs/scaling.md", "task", "sent, bytes").set_index("task").sum(axis=1)
+    one, built = tasks["278 jumps"] / 278, tasks["256 jumps of a design as built"] / 256
+    yield f"A jump therefore takes about {round(one, -2):.0f} bytes, and one as built {round(built, -1):.0f}"
+    yield f"A network of 1 Gbit/s carries {round(1e9 / 8 / built, -5):,.0f} jumps per second"
+    hours = costs * 1e8 / 3.6e6
+    yield f"would take {hours['`surrogate`']:.0f} hours with `surrogate` and {hours['`nsga2`']:.0f} hours with `nsga2`"
+    row = table("docs/scaling.md", "generation", "bytes per row").iloc[-1]
+    yield (
+        f"every study takes {costs['`surrogate`'] * 1e6 / 6e4:.0f} minutes of its coordinator and "
+        f"{row['bytes per row'] * 1e-3:.1f} GB"
+    )
+
+
+def long_run():
+    found = table("benchmarks/long_run.md", "evaluations", "memory, MB")
+    first, last = found.iloc[0], found.iloc[-1]
+    more = last["memory, MB"] - first["memory, MB"]
+    yield f"Memory grows by {100.0 * more / first['memory, MB']:.0f} percent after the first tenth, {more:.0f} MB"
+    sizes = found["bytes each"]
+    yield f"takes {sizes.min():,} to {sizes.max():,} bytes per evaluation in every tenth"
+    faster = 100.0 * (1.0 - last["CPU, ms each"] / first["CPU, ms each"])
+    yield f"The last tenth takes {faster:.0f} percent less time"
+
+
+PAGES = [actuators, bench, getting_started, legs, losses, model, scaling, long_run]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda one: one.__name__)
+def test_the_prose_says_what_the_tables_show(page):
+    folder = "benchmarks" if page is long_run else "docs"
+    assert untold(f"{folder}/{page.__name__}.md", page()) == []
