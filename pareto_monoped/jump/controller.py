@@ -11,7 +11,7 @@ from typing import Any
 from pareto_monoped.compute.compiled import inner
 from pareto_monoped.design import GRAVITY_M_PER_S2, Floats
 from pareto_monoped.jump.controller_record import HIP, KNEE, TOUCH_M
-from pareto_monoped.jump.torques import delivered, held_pose, limited, lower, release, since_touch_s, torques
+from pareto_monoped.jump.torques import delivered, eased, held_pose, limited, lower, release, since_touch_s, torques
 
 RUNNING, FLYING, APEX, NO_LIFT_OFF, SANK, DIVERGED, TIMEOUT, LANDED = range(8)
 """``status``; a jump goes on through ``FLYING``. A landing ends as ``LANDED``, or in failure."""
@@ -194,6 +194,8 @@ def _run(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
             if jump.landing > 0.0:
                 lower(jump)
             wanted = torques((hip, knee), foot, shank, speed, jump)
+            if jump.landing > 0.0:
+                wanted = eased(held_pose((hip, knee), speed, jump), wanted, jump)
             share = (gate, gate * release(knee, jump))
         elif jump.flight_stiffness_n_m_per_rad > 0.0:
             wanted, share = held_pose((hip, knee), speed, jump), (1.0, 1.0)

@@ -54,8 +54,12 @@ STATUSES = ("landed", "no_jump", "sank", "timeout", "diverged")
 """How a landing can end."""
 
 
-_FLIGHT_RAD_PER_S, _FLIGHT_RATIO = 25.0, 0.7
-"""How fast the posture's spring would swing the straight leg, and its damping; our own choice: it is there in 0.1 s."""
+_FLIGHT_RAD_PER_S, _FLIGHT_RATIO = 25.0, 0.6
+"""How fast the posture's spring would swing the straight leg at most, and its damping; our own choice: it is there in
+0.1 s."""
+_MOST_STOPPED = 1.2
+"""Share of a rotor's speed that the posture's damper may take from it until the next command acts. Our own choice: with
+1.5, motors shake on their elastic drives; with less, the posture comes late."""
 _FORWARD_RATIO = 0.3
 """Damping of the spring that keeps the foot below the hip; our own choice: with 0.75 the hip's motor shakes on its
 elastic drive in some designs, because commands come once per millisecond."""
@@ -85,8 +89,12 @@ def landing_records(
     square = np.square(shank_at[:, 0]) + np.square(shank_at[:, 1] - thigh)
     inertia = masses[:, 1] * np.square(thigh_at).sum(axis=1) + masses[:, 2] * square
     inertia += records["link_inertia_kg_m2"].sum(axis=1) + records["armature_kg_m2"][:, 0]
-    records["flight_stiffness_n_m_per_rad"] = inertia * _FLIGHT_RAD_PER_S**2
-    records["flight_damping_n_m_s_per_rad"] = 2.0 * _FLIGHT_RATIO * inertia * _FLIGHT_RAD_PER_S
+    damping = 2.0 * _FLIGHT_RATIO * inertia * _FLIGHT_RAD_PER_S
+    if calibration.drive.elastic:
+        late_s = calibration.simulation.period_s + calibration.simulation.delay_s
+        damping = np.minimum(damping, _MOST_STOPPED * records["armature_kg_m2"].min(axis=1) / late_s)
+    records["flight_damping_n_m_s_per_rad"] = damping
+    records["flight_stiffness_n_m_per_rad"] = np.square(damping / (2.0 * _FLIGHT_RATIO)) / inertia
     # In stance, the spring that stops the fall within the stroke.
     stop = end_stops(robots, calibration.joints)[1]
     folded = np.abs(thigh - shank) if stop is None else _length_m(robots, np.full(len(robots), stop.upper_rad))

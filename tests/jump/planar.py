@@ -346,6 +346,7 @@ def plan_of(m, apex_z, reach=0.9, stroke=0.7, ratio=0.4, lower_s=0.2):
     moved = m.mass.sum() + m.stand
     held = (stand[5] - stand[3]) * m.spring[1]  # without play
     straight = bodies(np.zeros(4), m)[0][2, 2]
+    swing = min(25.0, min(m.reflected) / (1e-3 * (1 + m.delay) * straight))
     return Plan(
         carried=-held / (m.shank * np.sin(stand[2] + stand[3])),
         catch=catch,
@@ -355,7 +356,7 @@ def plan_of(m, apex_z, reach=0.9, stroke=0.7, ratio=0.4, lower_s=0.2):
         catch_s=t[depth.argmax()] / omega,
         lower_s=lower_s,
         posture=posture,
-        held=np.array([625.0, 2 * 0.7 * 25.0]) * straight,
+        held=np.array([swing**2, 1.2 * swing]) * straight,
     )
 
 
@@ -372,10 +373,10 @@ def land(m, q, v, plan):
         if touched >= 0 and still >= 0.05:
             return period * 1e-3 - touched, given, taken, heat, peaks
         hip, knee = q[n - 2], q[n - 1]
-        if touched < 0:
-            for j in range(2):
-                torques[period, j] = plan.held[0] * (plan.posture[j] - q[n - 2 + j]) - plan.held[1] * v[n - 2 + j]
-        else:
+        for j in range(2):
+            torques[period, j] = plan.held[0] * (plan.posture[j] - q[n - 2 + j]) - plan.held[1] * v[n - 2 + j]
+        if touched >= 0:
+            flown = max(1 - since / 0.003, 0.0)
             u = min(max((since - plan.catch_s) / plan.lower_s, 0.0), 1.0)
             place = plan.catch - (plan.catch - plan.crouch) * (3 * u**2 - 2 * u**3)
             along, up = jacobian(turned(hip, 0.0, -m.thigh), turned(hip + knee, 0.0, -m.shank))
@@ -385,7 +386,8 @@ def land(m, q, v, plan):
             push_x = -plan.stiffness * x - plan.damping[0] * forward
             push_down = plan.carried + plan.stiffness * (place - down) - plan.damping[1] * sinking
             for j in range(2):
-                torques[period, j] = along[2 + j] * push_x - up[2 + j] * push_down
+                torques[period, j] *= flown
+                torques[period, j] += (1 - flown) * (along[2 + j] * push_x - up[2 + j] * push_down)
         due = period - m.delay
         for j in range(2):
             motor[j] = limited(torques[due, j], v, m, j) if due >= 0 else 0.0

@@ -183,8 +183,7 @@ def landed_by_hand(designs, calibration):
     """Time to rest, work given and taken by the motors, their heat, and peak loads; a row each.
 
     They start in the package's state at the apex. From an apex of their own, 0.1 ms earlier or later, control periods
-    would begin elsewhere, and with them would the command that follows touchdown: 1 ms more or less of the posture's
-    torque moves the hip's peak by up to 10 percent.
+    would begin elsewhere, and the hip's peak changes with the time from the last command to touchdown.
     """
     robots = robot_arrays(designs, map_for("VT8020"), calibration.mass)
     population = population_of(robots, control_of(designs), start_pose(robots, calibration), calibration)
@@ -201,13 +200,13 @@ def landed_by_hand(designs, calibration):
 
 @pytest.mark.parametrize(
     ("timestep_s", "share", "count"),
-    [(2e-4, 0.015, 9), *(pytest.param(*how, 14, marks=pytest.mark.long) for how in ((2e-4, 0.015), (5e-5, 0.01)))],
+    [(2e-4, 0.012, 9), *(pytest.param(*how, 14, marks=pytest.mark.long) for how in ((2e-4, 0.012), (5e-5, 0.003)))],
 )
 def test_landings_are_the_documented_ones(timestep_s, share, count):
     """Peak loads of 14 designs by docs/landing.md.
 
-    Measured at worst: 1.0 percent at the usual step and 0.3 at a quarter of it; gears of the hip, in which the impact
-    rings with 300 Hz, 2.0 percent but for one design of 4.7, and 0.5 but for one of 3.6.
+    Measured at worst: gears of the hip, in which the impact rings with 300 Hz, 1.9 percent at the usual step and 0.3 at
+    a quarter of it; all other loads 1.0 and 0.2.
     """
     designs, calibration = np.vstack((CASES, RANDOM, OTHER))[:count], timed("reference", timestep_s=timestep_s)
     found, by_hand = landed(designs, map_for("VT8020"), calibration), landed_by_hand(designs, calibration)
@@ -217,9 +216,7 @@ def test_landings_are_the_documented_ones(timestep_s, share, count):
         assert np.median(abs(getattr(found, name) / by_hand[:, k] - 1.0)) < 0.003, name
     off = {name: abs(getattr(found, f"landing_{name}") / by_hand[:, k] - 1.0) for k, name in enumerate(LOADS, start=4)
            if name != "peak_stop_torque_n_m"}  # fmt: skip
-    hips = off.pop("peak_gear_torque_hip_n_m")
+    assert off.pop("peak_gear_torque_hip_n_m").max() < 2.0 * share
     assert np.max(list(off.values())) < share
-    assert hips.max() < 0.05
-    assert np.count_nonzero(hips < 0.03) >= count - 1
     assert not found.landing_peak_stop_torque_n_m.any()
     assert not by_hand[:, 7].any()
