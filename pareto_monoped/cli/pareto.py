@@ -49,8 +49,8 @@ def pareto(
     take less than 1.5 times the least battery energy stored for their height.
 
     The first front is that of the study. The second has the other energy in place of the study's: that at the battery
-    for mechanical energy. A study of other objectives has one front only. Without
-    a STUDY.toml it is studies/case_c.toml, which is written if it is missing.
+    for mechanical energy; both studies run side by side, each with all threads, unless there is one. A study of other
+    objectives has one front only. Without a STUDY.toml it is studies/case_c.toml, which is written if it is missing.
 
     It can be repeated safely: a finished study is not run again, and CAD and report are made again only if they are
     out of date.
