@@ -3,18 +3,22 @@
 import contextlib
 import io
 import textwrap
+import threading
 import tomllib
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import isnan
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from pareto_monoped.cli import options
 from pareto_monoped.cli.options import DATABASE_FILE, Local
 from pareto_monoped.cli.terminal import echo, new_console, note
+from pareto_monoped.compute.chunks import cores
+from pareto_monoped.compute.processes import Processes, say
 
 if TYPE_CHECKING:
     from pareto_monoped.analysis.choices import Choice
@@ -45,8 +49,8 @@ def pareto(
     take less than 1.5 times the least battery energy stored for their height.
 
     The first front is that of the study. The second has the other energy in place of the study's: that at the battery
-    for mechanical energy. A study of other objectives has one front only. Without
-    a STUDY.toml it is studies/case_c.toml, which is written if it is missing.
+    for mechanical energy; both studies run side by side, each with all threads, unless there is one. A study of other
+    objectives has one front only. Without a STUDY.toml it is studies/case_c.toml, which is written if it is missing.
 
     It can be repeated safely: a finished study is not run again, and CAD and report are made again only if they are
     out of date.
@@ -78,11 +82,16 @@ def pareto(
     options += [f"--workers={workers}"] if workers else []
     options += [] if seed is None else [f"--seed={seed}"]
     options += ["--no-strength"] if no_strength else []
-    steps.do("run", study_file, "--db", db, *options)
-    dbs = [db]
+    dbs = [db] if other is None else [db, _beside(db, other)]
+    runs: list[tuple[object, ...]] = [("run", study_file, "--db", db, *options)]
     if other is not None:
-        dbs.append(_beside(db, other))
-        steps.do("run", study_file, "--objectives", ",".join(other.names), "--db", dbs[1], *options)
+        runs.append(("run", study_file, "--objectives", ",".join(other.names), "--db", dbs[1], *options))
+    # Neither study needs the other. Where there is a report, both are most likely finished.
+    side_by_side = other is not None and not report.exists() and (workers or cores()) > 1
+    with _Ahead(runs[1]) if side_by_side else contextlib.nullcontext() as second:
+        steps.do(*runs[0])
+        for run in runs[1:]:
+            steps.do(*run, ahead=second)
     studies = [read_study(path) for path in dbs]
     refuse_empty(studies[0].front(), studies[0])
 
@@ -147,20 +156,77 @@ class _Steps:
     total: int
     done: int = 0
 
-    def do(self, command: str, *arguments: object, made: Callable[[], bool] = lambda: False) -> None:
-        """Run one of our own commands as a user would. Show the command, but not what it prints to stdout."""
-        from pareto_monoped.cli import cli
+    def do(self, *command: object, made: Callable[[], bool] = lambda: False, ahead: "_Ahead | None" = None) -> None:
+        """Run one of our own commands as a user would. Show the command, but not what it prints to stdout.
 
+        One that has begun ``ahead`` only comes to its end here.
+        """
         self.done += 1
-        words = [command, *map(str, arguments)]
+        words = [str(word) for word in command]
         up_to_date = made()
         ending = "  (up to date)" if up_to_date else ""
         echo(f"[{self.done}/{self.total}] pareto-monoped {' '.join(words)}{ending}", err=True)
         if not up_to_date:
-            with contextlib.redirect_stdout(io.StringIO()):
-                code = cli.main(args=words, prog_name="pareto-monoped", standalone_mode=False)
+            code = ahead.code() if ahead else _code_of(words)
             if code:
                 raise click.exceptions.Exit(code)
+
+
+def _code_of(words: Sequence[str]) -> int | None:
+    """Run a command without what it prints to stdout, and return its exit code, which may be None for 0."""
+    from pareto_monoped.cli import cli
+
+    with contextlib.redirect_stdout(io.StringIO()):
+        code: int | None = cli.main(args=list(words), prog_name="pareto-monoped", standalone_mode=False)
+    return code
+
+
+class _Ahead:
+    """A context in which a command runs in a process of its own; its messages wait until its code is asked for.
+
+    The process ends with the context. Of a study that is cut short so, everything is stored but one generation.
+    """
+
+    def __init__(self, command: Sequence[object]) -> None:
+        self._lock, self._waiting, self._heard = threading.Lock(), True, ""
+        self._process = Processes(hear=self._hear)
+        self._future = self._process.submit(_code_elsewhere, [str(word) for word in command])
+
+    def __enter__(self) -> "_Ahead":
+        return self
+
+    def __exit__(self, *problem: Any) -> None:
+        self._process.__exit__(*problem)
+
+    def code(self) -> int | None:
+        """Show what the command has said and what it says from now on; return its exit code or raise its error."""
+        with self._lock:
+            self._waiting = False
+            echo(self._heard, err=True, nl=False)
+        code: int | None = self._future.result()
+        return code
+
+    def _hear(self, text: str) -> None:
+        with self._lock:
+            if self._waiting:
+                self._heard += text
+            else:
+                echo(text, err=True, nl=False)
+
+
+class _Told(io.StringIO):
+    """A stream to the process that began this one."""
+
+    def write(self, text: str) -> int:
+        count = super().write(text)  # which refuses bytes
+        say(text)
+        return count
+
+
+def _code_elsewhere(words: Sequence[str]) -> int | None:
+    warnings.simplefilter("ignore")  # they are for developers
+    with contextlib.redirect_stderr(_Told()):
+        return _code_of(words)
 
 
 def _beside(db: Path, other: "Objectives") -> Path:

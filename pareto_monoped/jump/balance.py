@@ -4,6 +4,7 @@ The audit of a front needs only what remains open, for hundreds of jumps. This t
 and no entry for the integrator, so all jumps step together.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,11 +15,14 @@ from pareto_monoped.design import Floats
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.end_stops import end_stops, slow_torque_n_m
 from pareto_monoped.jump.model import coordinates, gear_efficiency, joint_places, motor_places, start_pose
-from pareto_monoped.jump.population import Population, prepare, threads_for
+from pareto_monoped.jump.population import Population, prepare, states, threads_for
 from pareto_monoped.jump.quiet import quiet
 from pareto_monoped.jump.single import Moment, Then, constraint_forces, moments
 from pareto_monoped.jump.variations import take
 from pareto_monoped.robot.population import RobotArrays
+
+_AT_ONCE = 32
+"""Steps whose speeds and forces are kept together. A jump wastes half of this at its end: a hundredth of its steps."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -277,37 +281,48 @@ def _jumped(population: Population, calibration: Calibration, damping: Floats) -
     from pareto_monoped.jump.callback import controlled, untimed
     from pareto_monoped.jump.controller import DIVERGED, FLYING
 
-    batch, status = population.batch, population.records["status"]
-    qpos, qvel = batch.bind("qpos"), batch.bind("qvel")
-    ctrl, constraint = batch.bind("ctrl"), batch.bind("qfrc_constraint")
+    batch, records = population.batch, population.records
+    status, steps, qvel = records["status"], records["steps"], batch.bind("qvel")
     motors, joints = motor_places(calibration), joint_places(calibration)
-    springs = np.asarray(batch.expand("tendon_damping"))[:, :2] if calibration.drive.elastic else None
+    springs = np.asarray(batch.expand("tendon_damping"))[:, None, :2] if calibration.drive.elastic else None
     supplied, lost = np.zeros((2, len(status)))
-    last_qpos, last_qvel = np.array(qpos), np.array(qvel)
+    sizes = {"qvel": batch.model.nv, "ctrl": batch.model.nu, "qfrc_constraint": batch.model.nv}
+    room = {name: np.zeros((len(status), _AT_ONCE, size)) for name, size in sizes.items()}
     ids = np.arange(len(status))
     with controlled(), untimed():
         while len(ids):
-            before = qvel[ids]
-            last_qpos[ids], last_qvel[ids] = qpos[ids], before
+            first, counted = qvel[ids, None], steps[ids]
+            seen = {name: values[: len(ids)] for name, values in room.items()}
             try:
-                batch.step(ids, 1)
+                batch.rollout(_AT_ONCE, record=tuple(seen), ids=ids, out=seen)
             except SimulationError as problem:
                 status[problem.ids] = DIVERGED
-            # MuJoCo resets a simulation that it warns of, and counts the warnings of the last call alone.
+            # A simulation that MuJoCo warns of stops, and it counts the warnings of the last call alone.
             status[ids[batch.warning[ids, :, 1].any(axis=1)]] = DIVERGED
-            # The controller ends a jump at the beginning of a step, which then does not count.
             running = status[ids] <= FLYING
-            ids, before = ids[running], before[running]
-            mean = 0.5 * (before + qvel[ids])
-            damped = qvel[ids] if calibration.simulation.integrator == "Euler" else mean
+            after, ctrl, constraint = seen.values()
+            before = np.concatenate((first, after[:, :-1]), axis=1)
+            mean = 0.5 * (before + after)
+            damped = after if calibration.simulation.integrator == "Euler" else mean
             moved = calibration.simulation.timestep_s * mean
-            supplied[ids] += np.sum(ctrl[ids, :2] * moved[:, motors], axis=1)
-            lost[ids] += np.sum((damping[ids] * damped - constraint[ids]) * moved, axis=1)
-            lost[ids] -= np.sum(ctrl[ids, 2:] * moved[:, joints[: ctrl.shape[1] - 2]], axis=1)
+            gave = np.sum(ctrl[..., :2] * moved[..., motors], axis=2)
+            took = [np.sum((damping[ids, None] * damped - constraint) * moved, axis=2)]
+            took.append(-np.sum(ctrl[..., 2:] * moved[..., joints[: ctrl.shape[2] - 2]], axis=2))
             if springs is not None:
-                rate, wound = (each[:, motors] - each[:, joints] for each in (before, moved))
-                lost[ids] += np.sum(springs[ids] * rate * wound, axis=1)
-    return supplied, lost, last_qpos, last_qvel
+                rate, wound = (each[..., motors] - each[..., joints] for each in (before, moved))
+                took.append(np.sum(springs[ids] * rate * wound, axis=2))
+            # The controller ends a jump at the beginning of a step, which then does not count, as those after it.
+            made = np.arange(_AT_ONCE) < (steps[ids] - counted - ~running)[:, None]
+            supplied[ids] = _added(supplied[ids], [gave], made)
+            lost[ids] = _added(lost[ids], took, made)
+            ids = ids[running]
+    return supplied, lost, *states(records, calibration)
+
+
+def _added(total: Floats, parts: Sequence[Floats], made: NDArray[np.bool_]) -> Floats:
+    """Add parts of shape (n, steps) to totals, one after the other, so that no bit depends on how many are together."""
+    parts_in_turn = np.where(made[..., None], np.stack(parts, axis=2), 0.0).reshape(len(total), -1)
+    return np.cumsum(np.column_stack((total, parts_in_turn)), axis=1)[:, -1]
 
 
 def _energies_j(batch: Any, qpos: Floats, qvel: Floats | float) -> Floats:

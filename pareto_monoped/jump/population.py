@@ -49,9 +49,9 @@ _WARNINGS = {
 
 
 def threads_for(jumps: int, workers: int) -> int:
-    """Return how many threads step jumps of which something is read after every step.
+    """Return how many threads step jumps of which something is read every few steps.
 
-    All threads meet after each step, which takes them as long as some jumps' steps. Our own choice: 16 jumps each.
+    All threads meet there, which takes them as long as some jumps' steps. Our own choice: 16 jumps each.
     """
     return max(1, min(workers, jumps // 16))
 

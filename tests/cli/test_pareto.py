@@ -8,23 +8,26 @@ import shutil
 import signal
 import subprocess
 import sys
-from contextlib import redirect_stderr, redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.analysis.choices import HEIGHTS_M, two_fronts
 from pareto_monoped.cli import _run as cli
-from pareto_monoped.cli.pareto import _newer
+from pareto_monoped.cli.pareto import _Ahead, _newer
 from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.errors import DatabaseError, StudyError
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.gravity import standing_height_m
 from pareto_monoped.pareto.pick import pick
 from pareto_monoped.pareto.selectors import Knee
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.storage.reader import read_study
+from tests.compute.dask_here import until
 
 ROOT = Path(__file__).parents[2]
 WORDS = [sys.executable, "-m", "pareto_monoped", "pareto", "studies/quick.toml", "--evaluations", "160"]
@@ -220,6 +223,46 @@ def test_a_missing_study_is_one_line(tmp_path):
     assert done.returncode == 2
     assert len(done.stderr.strip().splitlines()) == 1
     assert "studies/quick.toml" in done.stderr
+
+
+def stored(db):
+    """How many trials a database has, which may not be made yet."""
+    try:
+        return len(read_study(db).trials)
+    except DatabaseError:
+        return 0
+
+
+class TestAhead:
+    """A command that runs in a process of its own until its turn comes."""
+
+    def test_its_messages_wait_for_its_turn(self, tmp_path, monkeypatch, capfd):
+        monkeypatch.chdir(tmp_path)
+        with _Ahead(["init", "quick"]) as ahead:
+            until(lambda: ahead._heard.endswith("\n"))
+            assert capfd.readouterr() == ("", "")
+            assert not ahead.code()
+        assert capfd.readouterr() == ("", "wrote quick.toml; run it with: pareto-monoped run quick.toml\n")
+        assert (tmp_path / "quick.toml").exists()
+
+    def test_its_error_is_that_of_the_command(self, tmp_path, monkeypatch):
+        monkeypatch.chdir(tmp_path)
+        with _Ahead(["run", "none.toml"]) as ahead, pytest.raises(StudyError, match=r"none\.toml"):
+            ahead.code()
+
+    def test_a_study_cut_short_goes_on_where_it_stopped(self, tmp_path):
+        """By the same trials as those of a study that nobody stopped."""
+        run = ["run", str(ROOT / "studies" / "quick.toml"), "--evaluations", "400", "--workers", "1", "--db"]
+        cut, whole = tmp_path / "cut.db", tmp_path / "whole.db"
+        with suppress(KeyboardInterrupt), _Ahead([*run, cut]):
+            until(lambda: stored(cut) > 0)
+            raise KeyboardInterrupt
+        assert not read_study(cut).meta.finished
+        assert 0 < len(read_study(cut).trials) < 400
+        for path in (cut, whole):
+            assert cli([*run, str(path)]) == 0
+        names = [name for name in read_study(cut).trials if name != "generation"]
+        pd.testing.assert_frame_equal(read_study(cut).trials[names], read_study(whole).trials[names])
 
 
 def test_a_page_is_made_again_if_one_of_its_sources_is_younger(tmp_path):

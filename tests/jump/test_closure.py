@@ -7,6 +7,7 @@ import pytest
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import CONTROL, LOWER, UPPER, columns, complete
+from pareto_monoped.jump import balance
 from pareto_monoped.jump.balance import balanced, energy_balance
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
@@ -54,3 +55,25 @@ def test_a_balance_does_not_depend_on_the_other_jumps_nor_on_the_workers():
     np.testing.assert_array_equal(errors, balanced(robots, control, calibration, workers=2).error)
     last = robot_arrays(designs[-3:], MAP, calibration.mass)
     np.testing.assert_array_equal(errors[-3:], balanced(last, control[-3:], calibration).error)
+
+
+def test_no_bit_depends_on_how_many_steps_are_kept_together(monkeypatch):
+    calibration = load_calibration()
+    designs = jumping(calibration)[:4]
+    robots, control = robot_arrays(designs, MAP, calibration.mass), columns(designs, CONTROL)
+    errors = balanced(robots, control, calibration).error
+    monkeypatch.setattr(balance, "_AT_ONCE", 7)
+    np.testing.assert_array_equal(errors, balanced(robots, control, calibration).error)
+
+
+def test_a_jump_that_goes_wrong_leaves_the_others_alone():
+    """Its torque is no number."""
+    calibration = load_calibration()
+    designs = jumping(calibration)[:3]
+    robots, control = robot_arrays(designs, MAP, calibration.mass), columns(designs, CONTROL)
+    alone = balanced(robots, control, calibration)
+    control[1] = np.nan
+    found = balanced(robots, control, calibration)
+    assert found.ok.tolist() == [True, False, True]
+    for values, known in ((found.error, alone.error), (found.height_m, alone.height_m)):
+        np.testing.assert_array_equal(values[found.ok], known[found.ok])
