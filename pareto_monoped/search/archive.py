@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+import moocore
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
@@ -39,7 +40,7 @@ class Standing:
     order: NDArray[np.intp]  #: rows of the designs that jumped, the nearest to the front first
     low: Floats  #: least costs of the front, shape (m,)
     extent: Floats  #: extent of its costs, shape (m,)
-    line: Floats  #: the front's costs as shares of its extent, in the order that ``shortfall`` wants, shape (k, m)
+    line: Floats  #: the front's costs as shares of its extent, shape (k, m)
 
     def scaled(self, costs: Floats) -> Floats:
         """Return costs as shares of the front's extent, shape (n, m)."""
@@ -87,6 +88,19 @@ class Archive:
         self._objectives, self._violation = self._objectives[rows], self._violation[rows]
         self._front, self._fronted = self._front[:0], 0
 
+    def gained(self, scores: Scores) -> float:
+        """Return the hypervolume that scored designs add to the front, or by how much they miss the limits less.
+
+        The front is that of the last ``standing``. Its corner is a tenth of its extent beyond it, our own choice, so
+        that its ends can gain, too.
+        """
+        front = self._objectives[self._front] * self.space.objectives.signs
+        if len(front) == 0:
+            return float(np.maximum(self._violation.min() - scores.violation, 0.0).sum())
+        corner = front.max(axis=0) + 0.1 * np.ptp(front, axis=0)
+        both = np.vstack((front, scores.minimised()[scores.violation == 0.0]))
+        return float(moocore.hypervolume(both, ref=corner) - moocore.hypervolume(front, ref=corner))
+
     def standing(self) -> Standing:
         """Find how the designs stand now."""
         costs = self._costs()
@@ -103,8 +117,8 @@ class Archive:
             scaled = (costs[front] - low) / extent
             posts = _posts(scaled)
             points = (np.where(jumped[:, None], costs, low) - low) / extent
-            behind += np.maximum(shortfall(points, along(scaled[posts])), 0.0)
-            line = along(scaled)
+            behind += np.maximum(shortfall(points, scaled[posts]), 0.0)
+            line = scaled
         # Of equals the newest first: a long front is known best where the search is now.
         order = len(behind) - 1 - np.argsort(behind[::-1], kind="stable")
         return Standing(
@@ -150,23 +164,13 @@ def _told_most(standing: Standing, count: int) -> NDArray[np.intp]:
     return np.sort(np.concatenate((front, nearest, spread)))
 
 
+@compiled
 def shortfall(points: Floats, front: Floats) -> Floats:
     """Measure how far points are behind a front, shape (n,): the shift in all objectives after which none is dominated.
 
-    The additive epsilon indicator (Zitzler et al. 2003) of the front, shape (k, m) with k at least 1 in the order of
-    ``along``, against each point, shape (n, m); less is better, and a point that gains over the front is below 0.
+    The additive epsilon indicator (Zitzler et al. 2003) of the front, shape (k, m), against each point, shape (n, m);
+    less is better, and a point that gains over the front is below 0.
     """
-    if front.shape[1] > 2:
-        return _shortfall_of_more(points, front)
-    # The lesser of what is missing in either objective is greatest where the two cross along the front.
-    crossing = np.searchsorted(front[:, 0] - front[:, 1], points[:, 0] - points[:, 1])
-    either = np.stack((np.maximum(crossing - 1, 0), np.minimum(crossing, len(front) - 1)))
-    return np.asarray(np.minimum(points[:, 0] - front[either, 0], points[:, 1] - front[either, 1]).max(axis=0))
-
-
-@compiled
-def _shortfall_of_more(points: Floats, front: Floats) -> Floats:
-    """Compute ``shortfall`` for any number of objectives and any order of the front, shape (n, m), (k, m) -> (n,)."""
     columns = points.T.copy()
     result, least = np.full(points.shape[0], -np.inf), np.empty(points.shape[0])
     # The points are the innermost loop: a processor takes several of them at once.
@@ -179,11 +183,6 @@ def _shortfall_of_more(points: Floats, front: Floats) -> Floats:
         for n in range(least.shape[0]):
             result[n] = max(result[n], least[n])
     return result
-
-
-def along(front: Floats) -> Floats:
-    """Sort a front of two objectives, shape (k, 2), by ever less of the first and more of the second; leave others."""
-    return front[np.lexsort((-front[:, 1], front[:, 0]))] if front.shape[1] == 2 else front
 
 
 def _posts(front: Floats) -> NDArray[np.intp]:

@@ -5,7 +5,6 @@ looks at the ends of each motor's own front, so that none is given up too early.
 """
 
 from collections.abc import Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -17,10 +16,10 @@ from scipy.spatial.distance import cdist
 from pareto_monoped.definition.algorithms import SurrogateSettings
 from pareto_monoped.search.algorithm import Algorithm, Floats, Proposal, Scores, Space
 from pareto_monoped.search.archive import Archive, Standing
-from pareto_monoped.search.prediction import CURIOSITY, LENIENT_PENALTY, MISSED, Prediction, gains, ranked, unlike
+from pareto_monoped.search.prediction import CURIOSITY, MISSED, PENALTY, Prediction, gains, ranked, unlike
 from pareto_monoped.search.response_surface import Features, features_of
 from pareto_monoped.search.seen import Seen, drawn
-from pareto_monoped.search.variation import exchanges, offspring, scans, small_steps, spread, swaps
+from pareto_monoped.search.variation import offspring, scans, small_steps, spread
 
 
 def one_thread() -> Any:
@@ -117,7 +116,7 @@ def ends_of_least_tried(
             costs, violation = prediction.fine(near)
             designs.append(near)
             away = cdist(features.scaled(near), archive.points).min(axis=1)
-            worth = -standing.scaled(costs)[:, objective] - LENIENT_PENALTY * violation
+            worth = -standing.scaled(costs)[:, objective] - PENALTY * violation
             promise.append(worth + CURIOSITY * np.minimum(away, 1.0))
             best = near[promise[-1].argmax()][None]
         yield np.vstack(designs)[np.argsort(-np.concatenate(promise), kind="stable")]
@@ -140,10 +139,6 @@ _REFINED = 3
 _STEPS = 4
 """Small steps that are tried from each of them. Our own choice."""
 
-_SWAPPED = 4
-"""Designs of the front whose gearboxes are each replaced by all others. Our own choice: a gearbox that gains a
-millimetre is one of 40, which steps at random rarely try where the gain is."""
-
 _ON_BOUND = (0.25, 0.45)
 """Share of a variable's values on either bound in a quarter of the first designs and in the next quarter, and in either
 half of those anywhere. Our own choice: many of the best designs have most of their variables on bounds, some of them in
@@ -151,18 +146,17 @@ a corner far from all others, and polynomials are determined best by points ther
 _ANYWHERE = 1000
 """Designs anywhere in the space from which explorers are chosen and climbs begin. Our own choice."""
 _EXPLORING = 0.1
-"""Share of a generation that explores. Our own choice: without it, some searches miss a part of the front that lies
-far from the rest in the space."""
+"""Share of what the model chooses that explores. Our own choice: without it, some searches miss a part of the front
+that lies far from the rest in the space."""
 
 _PLAIN = 0.2
-"""Share of a generation that is plain evolution, which the model does not rank. Our own choice: on Case C, five seeds
-are no worse with it, and where the model knows little, it tries what the model would not. Within 1,000 evaluations,
-ZDT4 is reached, and Kursawe nearly as well as by NSGA-II."""
+"""Share of plain evolution, which the model does not rank, when the model begins. Our own choice."""
+_PLAIN_ENDS = (0.1, 0.95)
+"""Least and greatest share of it. Our own choice: each side keeps a few designs, or what it gains is not seen."""
+_LEARNING = 0.1
+"""Weight of a new generation in that share: it follows the gains of about the last ten. Our own choice."""
 _CLIMBS = 6
 """Climbs that begin anywhere; as many begin on the front, and half as many close to it. Our own choice."""
-_EXCHANGED = 2
-"""Those of the front whose links, gearboxes, or both are exchanged first. Our own choice: legs with a long thigh and
-with a long shank come within a percent of each other, and steps do not lead from one to the other."""
 _CLOSE = 1000
 """Designs nearest the front that climbs begin at. Our own choice: a few times as many as the front has."""
 
@@ -189,14 +183,16 @@ class SurrogateSearch(Algorithm):
 
     The first generations are spread over the space, half of them over its bounds and corners, too. Later generations
     vary the designs on the front and predict the offspring's scores (``Prediction``). The most promising are varied
-    again in small steps, a few designs of the front get every other gearbox, and, once the model has a design for each
-    of its terms, some climb (``climbs``): from anywhere, from the front and close to it, and with links or gearboxes
-    exchanged. Of all these, the search asks for those that gain most over the front, the best of each part of it first.
-    A tenth of each generation explores far from all simulated designs, and a fifth is plain evolution. Where motors are
-    chosen, the motor with the fewest designs gets some at the ends of its own front (``ends_of_least_tried``).
+    again in small steps, and, once the model has a design for each of its terms, some climb (``climbs``): from
+    anywhere, from the front and close to it. Of all these, the search asks for those that gain most over the front, the
+    best of each part of it first; without a front, for those that miss the limits least and are unlike each other. Some
+    explore far from all simulated designs. A share is plain evolution, the greater, the more that gains beside what the
+    model chooses. Where motors are chosen, the motor with the fewest designs gets some at the ends of its own front
+    (``ends_of_least_tried``).
 
-    Every generation has its own random generator, whose seed follows from the study's. The simulated designs are
-    therefore the whole state, and a search rebuilt from them, also with a larger budget, continues bit for bit.
+    Every generation has its own random generator, whose seed follows from the study's. The simulated designs and the
+    share of plain evolution are therefore the whole state, and a search rebuilt from them, also with a larger budget,
+    continues bit for bit.
     """
 
     def __init__(self, space: Space, settings: SurrogateSettings, seed: int) -> None:
@@ -208,6 +204,8 @@ class SurrogateSearch(Algorithm):
         self._archive = Archive(space)
         self._features: Features = features_of(space)
         self._asked = np.zeros((0, len(space.names)))
+        self._plain = 0  # designs of plain evolution, the last of those asked for
+        self._plain_share = _PLAIN
 
     @property
     def _times(self) -> int:
@@ -224,35 +222,48 @@ class SurrogateSearch(Algorithm):
         generator = np.random.default_rng([self._seed, self._generation])
         size = self._size
         standing = self._archive.standing()
+        # Where no drawn design holds the limits, drawing more rarely finds one.
+        drawn_generations = self._settings.drawn_generations if len(standing.front) else 1
+        self._plain = 0
         if self._generation == 0 and self._space.begin is not None:
             chosen = self._space.begin()[:size]
-        elif self._generation < self._settings.drawn_generations or len(standing.order) == 0:
+        elif self._generation < drawn_generations or len(standing.order) == 0:
             corners = (size - size // 2) // 2
             counts = (size // 2, size - size // 2 - corners, corners)
             parts = zip(counts, (0.0, *_ON_BOUND), strict=True)
             chosen = np.vstack([spread(self._space, count, generator, share) for count, share in parts])
         else:
             chosen = self._promising(standing, generator)
-        chosen = chosen[self._seen.new(chosen)]
+        new = self._seen.new(chosen)
+        self._plain = int(np.count_nonzero(new[len(new) - self._plain :]))
+        chosen = chosen[new]
         if len(chosen) == 0:
             chosen = drawn(self._space, self._seen, generator, size)
         self._asked = chosen
         return Proposal(values=chosen) if len(chosen) else None
 
     def tell(self, scores: Scores) -> None:
-        """Add the designs to what the model is fitted to."""
+        """Add the designs to what the model is fitted to; compare what model and plain evolution gained."""
+        by_model = len(self._asked) - self._plain
+        if self._plain and by_model:
+            model = self._archive.gained(scores.of(slice(by_model))) / by_model
+            plain = self._archive.gained(scores.of(slice(by_model, None))) / self._plain
+            if model + plain > 0.0:
+                share = self._plain_share + _LEARNING * (plain / (model + plain) - self._plain_share)
+                self._plain_share = min(max(share, _PLAIN_ENDS[0]), _PLAIN_ENDS[1])
         self._add(self._asked, scores)
         self._generation += 1
 
     def state(self) -> dict[str, Any]:
-        """Return the number of generations; the designs are in the database."""
-        return {"generation": self._generation}
+        """Return the number of generations and the share of plain evolution; the designs are in the database."""
+        return {"generation": self._generation, "plain_share": self._plain_share}
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
         """Add the designs of the history."""
         for values, scores in history:
             self._add(values, scores)
         self._generation = int(state["generation"])
+        self._plain_share = float(state.get("plain_share", _PLAIN))  # versions up to 0.3 stored none
 
     def _add(self, values: Floats, scores: Scores) -> None:
         self._seen.add(values)
@@ -260,70 +271,63 @@ class SurrogateSearch(Algorithm):
 
     def _promising(self, standing: Standing, generator: np.random.Generator) -> Floats:
         """Choose the most promising of many new designs; all of them if they are no more than a generation has."""
-        with one_thread(), ThreadPoolExecutor(1) as helper:
-            # The model needs no offspring, and offspring no model: each has a core.
-            prediction = Prediction(self._archive, standing, self._features, helper)
-            fitting = helper.submit(prediction.fit)
-            values = offspring(self._archive, standing, self._settings, generator)
-            values = values[self._seen.new(values)]
-            if len(values) <= self._size:
-                return values
-            prediction.look_around()
-            fitting.result()
+        values = offspring(self._archive, standing, self._settings, generator)
+        values = values[self._seen.new(values)]
+        if len(values) <= self._size:
+            return values
+        with one_thread():
+            prediction = Prediction(self._archive, standing, self._features)
             return self._most_promising(values, prediction, standing, generator)
 
     def _most_promising(
         self, values: Floats, prediction: Prediction, standing: Standing, generator: np.random.Generator
     ) -> Floats:
-        """Choose a generation from offspring, shape (n, d), small steps around the best, and climbs; explorers last."""
-        size = self._size
-        roughly = prediction.rough(values)
-        plain = _unranked(values, roughly[1], round(_PLAIN * size) if len(standing.front) else 0, generator)
+        """Choose a generation from offspring, shape (n, d), small steps around the best, and climbs.
+
+        Explorers come behind these, plain evolution last.
+        """
+        size, roughly = self._size, prediction.rough(values)
+        plain = _unranked(values, roughly[1], round(self._plain_share * size), generator)
         best = values[ranked(*roughly, standing)[: _REFINED * size]]
-        swapped = swaps(
-            self._space, self._archive.values[generator.permutation(standing.front)[: self._times * _SWAPPED]]
-        )
-        values = np.vstack((best, small_steps(self._space, best, _STEPS, generator), swapped))
+        values = np.vstack((best, small_steps(self._space, best, _STEPS, generator)))
         values = values[self._seen.new(values)]
         costs, violation = prediction.fine(values)
-        explorers, count = values[:0], round(_EXPLORING * size)
+        explorers, count = values[:0], round(_EXPLORING * (size - len(plain)))
+        known = self._archive.points
+        anywhere = np.vstack([spread(self._space, _ANYWHERE // 2, generator, share) for share in _ON_BOUND])
+        expected = prediction.rough(anywhere)
+        if prediction.determined or len(standing.front) == 0:
+            start = self._starts(anywhere[ranked(*expected, standing)], standing, generator)
+            climbed = climbs(self._space, start, prediction, standing, generator)
+            values, costs = np.vstack((values, climbed.values)), np.vstack((costs, climbed.costs))
+            violation = np.concatenate((violation, climbed.violation))
+            ends = climbed.ends
+            expected_there = climbed.costs[ends], climbed.violation[ends]
+            explorers = self._afar(climbed.values[ends], expected_there, standing, known, count // 2)
+            known = np.vstack((known, self._features.scaled(explorers)))
+        if self._space.choices and len(standing.front):
+            motors = ends_of_least_tried(self._features, self._archive, standing, prediction, generator)
+            firsts = np.vstack([best[self._seen.new(best)][:_OF_A_MOTOR] for best in motors])
+            explorers = np.vstack((explorers, firsts[: size // 4]))
+        others = self._afar(anywhere, expected, standing, known, max(count - len(explorers), 0))
+        # A climb from anywhere may have ended where it began, or where plain evolution leads.
+        others = np.vstack((explorers, others, plain))
+        new = self._seen.new(np.vstack((others, values)))
+        fresh = new[len(others) :]
+        values, costs, violation = values[fresh], costs[fresh], violation[fresh]
+        self._plain = len(plain)
+        left = max(size - len(others), 0)
         if len(standing.front):
-            known = self._archive.points
-            anywhere = np.vstack([spread(self._space, _ANYWHERE // 2, generator, share) for share in _ON_BOUND])
-            expected = prediction.rough(anywhere)
-            if prediction.determined:
-                promising = anywhere[ranked(*expected, standing)[: self._times * _CLIMBS]]
-                climbed = self._climbs(promising, prediction, standing, generator)
-                values, costs = np.vstack((values, climbed.values)), np.vstack((costs, climbed.costs))
-                violation = np.concatenate((violation, climbed.violation))
-                ends = climbed.ends
-                expected_there = climbed.costs[ends], climbed.violation[ends]
-                explorers = self._afar(climbed.values[ends], expected_there, standing, known, count // 2)
-                known = np.vstack((known, self._features.scaled(explorers)))
-            if self._space.choices:
-                motors = ends_of_least_tried(self._features, self._archive, standing, prediction, generator)
-                firsts = np.vstack([best[self._seen.new(best)][:_OF_A_MOTOR] for best in motors])
-                explorers = np.vstack((explorers, firsts[: size // 4]))
-            others = self._afar(anywhere, expected, standing, known, max(count - len(explorers), 0))
-            explorers = np.vstack((explorers, others))
-            # A climb from anywhere may have ended where it began.
-            explorers = explorers[self._seen.new(explorers)]
-        # Where climbs ended may be among the explorers, too.
-        others = np.vstack((explorers, plain))
-        new = self._seen.new(np.vstack((others, values)))[len(others) :]
-        values, costs, violation = values[new], costs[new], violation[new]
-        chosen = values[ranked(costs, violation, standing)[: size - len(others)]]
-        return np.vstack((chosen, others))
+            return np.vstack((values[ranked(costs, violation, standing)[:left]], others))
+        known = np.vstack((self._archive.points, self._features.scaled(others)))
+        return np.vstack((self._afar(values, (costs, violation), standing, known, left), others))
 
-    def _climbs(
-        self, promising: Floats, prediction: Prediction, standing: Standing, generator: np.random.Generator
-    ) -> Climbs:
-        """Climb from promising designs anywhere, from the front and close behind it, and from exchanged designs."""
-        count, exchanged = self._times * _CLIMBS, self._times * _EXCHANGED
-        front = self._archive.values[generator.permutation(standing.front)[:count]]
-        close = self._archive.values[generator.permutation(standing.order[:_CLOSE])[: count // 2]]
-        start = np.vstack((promising, exchanges(self._space, front[:exchanged]), front[exchanged:], close))
-        return climbs(self._space, start, prediction, standing, generator)
+    def _starts(self, promising: Floats, standing: Standing, generator: np.random.Generator) -> Floats:
+        """Return designs that climbs begin at: promising ones anywhere, of the front, and close behind it."""
+        count = self._times * _CLIMBS
+        front = generator.permutation(standing.front)[:count]
+        close = generator.permutation(standing.order[:_CLOSE])[: count // 2]
+        return np.vstack((promising[:count], self._archive.values[front], self._archive.values[close]))
 
     def _afar(
         self, values: Floats, expected: tuple[Floats, Floats], standing: Standing, known: Floats, count: int
