@@ -191,7 +191,7 @@ class SurrogateSearch(Algorithm):
     (``ends_of_least_tried``).
 
     Every generation has its own random generator, whose seed follows from the study's. The simulated designs and the
-    share of plain evolution are therefore the whole state, and a search rebuilt from them, also with a larger budget,
+    share of plain evolution are therefore nearly the whole state, and a search rebuilt from them, also with a larger budget,
     continues bit for bit.
     """
 
@@ -206,6 +206,7 @@ class SurrogateSearch(Algorithm):
         self._asked = np.zeros((0, len(space.names)))
         self._plain = 0  # designs of plain evolution, the last of those asked for
         self._plain_share = _PLAIN
+        self._drawing = True  # whether designs are still spread over the space
 
     @property
     def _times(self) -> int:
@@ -222,12 +223,12 @@ class SurrogateSearch(Algorithm):
         generator = np.random.default_rng([self._seed, self._generation])
         size = self._size
         standing = self._archive.standing()
-        # Where no drawn design holds the limits, drawing more rarely finds one.
-        drawn_generations = self._settings.drawn_generations if len(standing.front) else 1
+        if self._generation == self._settings.drawn_generations or (self._generation and len(standing.front) == 0):
+            self._drawing = False  # where no drawn design holds the limits, drawing more rarely finds one
         self._plain = 0
         if self._generation == 0 and self._space.begin is not None:
             chosen = self._space.begin()[:size]
-        elif self._generation < drawn_generations or len(standing.order) == 0:
+        elif self._drawing or len(standing.order) == 0:
             corners = (size - size // 2) // 2
             counts = (size // 2, size - size // 2 - corners, corners)
             parts = zip(counts, (0.0, *_ON_BOUND), strict=True)
@@ -255,15 +256,17 @@ class SurrogateSearch(Algorithm):
         self._generation += 1
 
     def state(self) -> dict[str, Any]:
-        """Return the number of generations and the share of plain evolution; the designs are in the database."""
-        return {"generation": self._generation, "plain_share": self._plain_share}
+        """Return all but the designs, which are in the database."""
+        return {"generation": self._generation, "plain_share": self._plain_share, "drawing": self._drawing}
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
         """Add the designs of the history."""
         for values, scores in history:
             self._add(values, scores)
         self._generation = int(state["generation"])
-        self._plain_share = float(state.get("plain_share", _PLAIN))  # versions up to 0.3 stored none
+        # Earlier versions stored the number alone.
+        self._plain_share = float(state.get("plain_share", _PLAIN))
+        self._drawing = bool(state.get("drawing", self._generation < self._settings.drawn_generations))
 
     def _add(self, values: Floats, scores: Scores) -> None:
         self._seen.add(values)
