@@ -163,6 +163,10 @@ _CLOSE = 1000
 _OF_A_MOTOR = 2
 """Designs of the least tried motor per generation and objective. Our own choice, see ``ends_of_least_tried``."""
 
+_SMALLER = 4
+"""What a population is divided by as long as no design holds the limits. Our own choice: the model errs most then, and
+learns from every generation."""
+
 _FEW = 50
 """Generations of the population's own size. Our own choice: 2,000 designs with the default population."""
 _LARGER = 2
@@ -202,6 +206,7 @@ class SurrogateSearch(Algorithm):
         self._generation = 0
         self._seen = Seen()
         self._archive = Archive(space)
+        self._standing = self._archive.standing()
         self._features: Features = features_of(space)
         self._asked = np.zeros((0, len(space.names)))
         self._plain = 0  # designs of plain evolution, the last of those asked for
@@ -216,16 +221,17 @@ class SurrogateSearch(Algorithm):
     @property
     def _size(self) -> int:
         """Designs of the next generation."""
-        return self._settings.population * self._times
+        if self._drawing or len(self._standing.front):
+            return self._settings.population * self._times
+        return max(1, self._settings.population // _SMALLER)
 
     def ask(self) -> Proposal | None:
         """Return designs spread over the space, later the most promising offspring; None if there is no new design."""
         generator = np.random.default_rng([self._seed, self._generation])
-        size = self._size
-        standing = self._archive.standing()
+        standing = self._standing = self._archive.standing()
         if self._generation == self._settings.drawn_generations or (self._generation and len(standing.front) == 0):
             self._drawing = False  # where no drawn design holds the limits, drawing more rarely finds one
-        self._plain = 0
+        self._plain, size = 0, self._size
         if self._generation == 0 and self._space.begin is not None:
             chosen = self._space.begin()[:size]
         elif self._drawing or len(standing.order) == 0:

@@ -398,7 +398,7 @@ def test_it_simulates_what_a_sweep_of_the_truth_would_choose(limit):
 def test_without_a_feasible_design_it_looks_for_the_least_violation():
     """None of the designs that begin the search has a link within a fiftieth of a millimetre of 317.3 mm."""
     algorithm, violations = SurrogateSearch(SPACE, SETTINGS, 1), []
-    for _ in range(8):
+    for _ in range(16):
         values = algorithm.ask().values
         scores = scored(values)
         missed = np.abs(values[:, 0] - 0.3173) / 0.2 - 1e-4
@@ -407,8 +407,11 @@ def test_without_a_feasible_design_it_looks_for_the_least_violation():
         algorithm.tell(replace(scores, violation=violation, constraints=missed[:, None]))
     drawn = violations[0]
     assert (drawn > 0.0).all()
-    assert np.median(violations[3]) < 0.2 * np.median(drawn)
-    assert np.median(violations[-1]) < 0.05 * np.median(drawn)
+    # Until one is found, a generation is a quarter of the population, and the model learns from each.
+    assert len(drawn) == 20
+    assert len(violations[3]) == 5
+    assert min(one.min() for one in violations) < 0.05 * drawn.min()
+    assert np.median(np.concatenate(violations[-4:])) < 0.02 * np.median(drawn)
 
 
 @pytest.fixture
