@@ -153,9 +153,6 @@ def _training(order: NDArray[np.intp]) -> NDArray[np.intp]:
 
 PENALTY = 10.0
 """Gain that an expected violation costs: a limit missed by a percent outweighs a gain of a tenth of the front."""
-MISSED = 0.01
-"""Expected violation from which on a design gains nothing. Our own choice: many fronts lie on a limit, which the model
-knows to about a percent; with 0, twice the volume of such a front was missed."""
 _LOOKED_AT = 25
 """Designs whose distance to the known ones is measured, the most promising, for each that is chosen."""
 CURIOSITY = 0.1
@@ -183,15 +180,19 @@ def _in_turns(parts: NDArray[np.intp]) -> NDArray[np.intp]:
 
 
 def unlike(
-    costs: Floats, violation: Floats, standing: Standing, points: Floats, known: Floats, count: int
+    costs: Floats,
+    violation: Floats,
+    standing: Standing,
+    points: Floats,
+    known: Floats,
+    count: int,
+    curiosity: float = CURIOSITY,
 ) -> list[int]:
     """Choose rows of ``count`` of n designs that promise much and are far from ``known`` features and each other."""
     gain = gains(costs, violation, standing)
     looked_at = np.argsort(-gain, kind="stable")[: count * _LOOKED_AT]
     points, gain = points[looked_at], gain[looked_at]
     away = cdist(points, known).min(axis=1)
-    # Without a front, distance counts the less, the nearer a design has come to the limits.
-    curiosity = CURIOSITY if len(standing.front) else min(float(standing.behind.min()), 1.0)
     chosen: list[int] = []
     for _ in range(min(count, len(points))):
         worth = gain + curiosity * np.minimum(away, 1.0)
@@ -210,4 +211,4 @@ def gains(costs: Floats, violation: Floats, standing: Standing) -> Floats:
     if len(standing.front) == 0:
         return -violation
     gain = -shortfall(standing.scaled(costs), standing.line)
-    return np.where(violation > MISSED, np.minimum(gain, 0.0), gain) - PENALTY * violation
+    return np.where(violation > standing.tolerated, np.minimum(gain, 0.0), gain) - PENALTY * violation

@@ -15,8 +15,8 @@ from scipy.spatial.distance import cdist
 
 from pareto_monoped.definition.algorithms import SurrogateSettings
 from pareto_monoped.search.algorithm import Algorithm, Floats, Proposal, Scores, Space
-from pareto_monoped.search.archive import Archive, Standing
-from pareto_monoped.search.prediction import CURIOSITY, MISSED, PENALTY, Prediction, gains, ranked, unlike
+from pareto_monoped.search.archive import TOLERATED, Archive, Standing
+from pareto_monoped.search.prediction import CURIOSITY, PENALTY, Prediction, gains, ranked, unlike
 from pareto_monoped.search.response_surface import Features, features_of
 from pareto_monoped.search.seen import Seen, drawn
 from pareto_monoped.search.variation import offspring, scans, small_steps, spread
@@ -148,11 +148,17 @@ _ANYWHERE = 1000
 _EXPLORING = 0.1
 """Share of what the model chooses that explores. Our own choice: without it, some searches miss a part of the front
 that lies far from the rest in the space."""
+_SEEKING = 0.5
+"""The same as long as no design holds the limits. Our own choice: the least violation near by may be that of the wrong
+gearboxes."""
 
 _PLAIN = 0.2
 """Share of plain evolution, which the model does not rank, when the model begins. Our own choice."""
 _PLAIN_ENDS = (0.1, 0.95)
 """Least and greatest share of it. Our own choice: each side keeps a few designs, or what it gains is not seen."""
+_HELD = 0.7
+"""Share of what the model chooses that holds the limits, below which half as much is tolerated next time, above which
+twice as much. Our own choice: near what is left beside explorers, of which few hold tight limits."""
 _LEARNING = 0.1
 """Weight of a new generation in that share: it follows the gains of about the last ten. Our own choice."""
 _CLIMBS = 6
@@ -176,10 +182,10 @@ climbs, take a tenth less time for 8,000 designs of Case C, but one of 15 seeds 
 the best known at 1.1 m, where all 15 are within 0.3 percent with twice as many."""
 
 
-def _unranked(values: Floats, violation: Floats, count: int, generator: np.random.Generator) -> Floats:
+def _unranked(values: Floats, missing: NDArray[np.bool_], count: int, generator: np.random.Generator) -> Floats:
     """Choose ``count`` of n offspring at random, of those that are not expected to miss a limit if there are enough."""
     order = generator.permutation(len(values))
-    return values[order[np.argsort(violation[order] > MISSED, kind="stable")[:count]]]
+    return values[order[np.argsort(missing[order], kind="stable")[:count]]]
 
 
 class SurrogateSearch(Algorithm):
@@ -194,9 +200,9 @@ class SurrogateSearch(Algorithm):
     model chooses. Where motors are chosen, the motor with the fewest designs gets some at the ends of its own front
     (``ends_of_least_tried``).
 
-    Every generation has its own random generator, whose seed follows from the study's. The simulated designs and the
-    share of plain evolution are therefore nearly the whole state, and a search rebuilt from them, also with a larger budget,
-    continues bit for bit.
+    Every generation has its own random generator, whose seed follows from the study's. The simulated designs and a few
+    numbers are therefore the whole state, and a search rebuilt from them, also with a larger budget, continues bit for
+    bit.
     """
 
     def __init__(self, space: Space, settings: SurrogateSettings, seed: int) -> None:
@@ -210,7 +216,7 @@ class SurrogateSearch(Algorithm):
         self._features: Features = features_of(space)
         self._asked = np.zeros((0, len(space.names)))
         self._plain = 0  # designs of plain evolution, the last of those asked for
-        self._plain_share = _PLAIN
+        self._plain_share, self._tolerated = _PLAIN, TOLERATED
         self._drawing = True  # whether designs are still spread over the space
 
     @property
@@ -228,7 +234,7 @@ class SurrogateSearch(Algorithm):
     def ask(self) -> Proposal | None:
         """Return designs spread over the space, later the most promising offspring; None if there is no new design."""
         generator = np.random.default_rng([self._seed, self._generation])
-        standing = self._standing = self._archive.standing()
+        standing = self._standing = self._archive.standing(self._tolerated)
         if self._generation == self._settings.drawn_generations or (self._generation and len(standing.front) == 0):
             self._drawing = False  # where no drawn design holds the limits, drawing more rarely finds one
         self._plain, size = 0, self._size
@@ -258,12 +264,20 @@ class SurrogateSearch(Algorithm):
             if model + plain > 0.0:
                 share = self._plain_share + _LEARNING * (plain / (model + plain) - self._plain_share)
                 self._plain_share = min(max(share, _PLAIN_ENDS[0]), _PLAIN_ENDS[1])
+            if len(self._standing.front):
+                held = float(np.mean(scores.violation[:by_model] == 0.0))
+                self._tolerated = min(self._tolerated * (2.0 if held > _HELD else 0.5), TOLERATED)
         self._add(self._asked, scores)
         self._generation += 1
 
     def state(self) -> dict[str, Any]:
         """Return all but the designs, which are in the database."""
-        return {"generation": self._generation, "plain_share": self._plain_share, "drawing": self._drawing}
+        return {
+            "generation": self._generation,
+            "plain_share": self._plain_share,
+            "tolerated": self._tolerated,
+            "drawing": self._drawing,
+        }
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
         """Add the designs of the history."""
@@ -272,6 +286,7 @@ class SurrogateSearch(Algorithm):
         self._generation = int(state["generation"])
         # Earlier versions stored the number alone.
         self._plain_share = float(state.get("plain_share", _PLAIN))
+        self._tolerated = float(state.get("tolerated", TOLERATED))
         self._drawing = bool(state.get("drawing", self._generation < self._settings.drawn_generations))
 
     def _add(self, values: Floats, scores: Scores) -> None:
@@ -296,12 +311,12 @@ class SurrogateSearch(Algorithm):
         Explorers come behind these, plain evolution last.
         """
         size, roughly = self._size, prediction.rough(values)
-        plain = _unranked(values, roughly[1], round(self._plain_share * size), generator)
+        plain = _unranked(values, roughly[1] > standing.tolerated, round(self._plain_share * size), generator)
         best = values[ranked(*roughly, standing)[: _REFINED * size]]
         values = np.vstack((best, small_steps(self._space, best, _STEPS, generator)))
         values = values[self._seen.new(values)]
         costs, violation = prediction.fine(values)
-        explorers, count = values[:0], round(_EXPLORING * (size - len(plain)))
+        explorers, count = values[:0], round((_EXPLORING if len(standing.front) else _SEEKING) * (size - len(plain)))
         known = self._archive.points
         anywhere = np.vstack([spread(self._space, _ANYWHERE // 2, generator, share) for share in _ON_BOUND])
         expected = prediction.rough(anywhere)
@@ -329,7 +344,9 @@ class SurrogateSearch(Algorithm):
         if len(standing.front):
             return np.vstack((values[ranked(costs, violation, standing)[:left]], others))
         known = np.vstack((self._archive.points, self._features.scaled(others)))
-        return np.vstack((self._afar(values, (costs, violation), standing, known, left), others))
+        # Distance counts the less, the nearer a design has come to the limits.
+        least = min(float(standing.behind.min()), 1.0)
+        return np.vstack((self._afar(values, (costs, violation), standing, known, left, least), others))
 
     def _starts(self, promising: Floats, standing: Standing, generator: np.random.Generator) -> Floats:
         """Return designs that climbs begin at: promising ones anywhere, of the front, and close behind it."""
@@ -339,9 +356,15 @@ class SurrogateSearch(Algorithm):
         return np.vstack((promising[:count], self._archive.values[front], self._archive.values[close]))
 
     def _afar(
-        self, values: Floats, expected: tuple[Floats, Floats], standing: Standing, known: Floats, count: int
+        self,
+        values: Floats,
+        expected: tuple[Floats, Floats],
+        standing: Standing,
+        known: Floats,
+        count: int,
+        curiosity: float = CURIOSITY,
     ) -> Floats:
         """Choose ``count`` of n designs, shape (n, d), that promise much and are far from points that are known."""
         new = self._seen.new(values)
         values, costs, violation = values[new], expected[0][new], expected[1][new]
-        return values[unlike(costs, violation, standing, self._features.scaled(values), known, count)]
+        return values[unlike(costs, violation, standing, self._features.scaled(values), known, count, curiosity)]
