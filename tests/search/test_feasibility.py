@@ -116,9 +116,26 @@ def test_without_a_front_designs_that_promise_alike_are_unlike_each_other():
     archive.add(values, replace(scored(values), violation=missed, constraints=missed[:, None]))
     standing, points = archive.standing(), np.array([[0.0, 0.0], [0.0, 0.01], [0.9, 0.0]])
     costs, violation = np.zeros((3, 2)), np.array([0.2, 0.2, 0.25])
-    assert unlike(costs, violation, standing, points, np.array([[0.0, -0.5]]), 2) == [2, 1]
+    assert unlike(costs, violation, standing, points, np.array([[0.0, -0.5]]), 2, 0.2) == [2, 1]
     # The worse one is too bad if a place that is nearly good enough is known.
-    assert unlike(costs, np.array([0.2, 0.2, 0.9]), standing, points, np.array([[0.0, -0.5]]), 2) == [1, 0]
+    assert unlike(costs, np.array([0.2, 0.2, 0.9]), standing, points, np.array([[0.0, -0.5]]), 2, 0.2) == [1, 0]
+
+
+def test_less_is_tolerated_after_choices_that_miss_the_limits_and_more_after_those_that_hold():
+    """Where the model knew a violation of 0.9 percent, it promised gains over a front of one design for ever."""
+    algorithm = SurrogateSearch(SPACE, SETTINGS, 5)
+    for _ in range(3):
+        algorithm.tell(scored(algorithm.ask().values))
+    tolerated = []
+    for missed in (0.005, 0.005, -0.1, -0.1, -0.1):
+        scores = scored(algorithm.ask().values)
+        violation = np.full(len(scores.values), max(missed, 0.0))
+        algorithm.tell(replace(scores, violation=violation, constraints=np.full((len(violation), 1), missed)))
+        tolerated.append(algorithm.state()["tolerated"])
+    assert tolerated == [0.005, 0.0025, 0.005, 0.01, 0.01]
+    standing = archive_of().standing(0.005)
+    ahead = standing.low - 5.0 * standing.extent
+    assert gains(ahead[None], np.array([0.006]), standing)[0] < 0.0
 
 
 def shares_of_plain_evolution(generations=25):
