@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from pymoo.indicators.hv import HV
 from pymoo.problems import get_problem
 
-from pareto_monoped.definition.algorithms import ALGORITHMS
+from pareto_monoped.definition.algorithms import EvolutionSettings, SurrogateSettings
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.search.algorithm import Algorithm, Scores, Space
 from pareto_monoped.search.evolution import Evolution
@@ -29,7 +29,7 @@ Floats = NDArray[np.float64]
 NAMES = ("energy_j", "mass_kg", "peak_foot_force_n")
 # Problem -> arguments of get_problem, corner of the hypervolume: a little beyond the true front where a search comes
 # near it, far off where it does not. The first eight are those that the search was developed on.
-PROBLEMS = {
+PROBLEMS: dict[str, tuple[dict[str, int], tuple[float, ...]]] = {
     "osy": ({}, (0.0, 100.0)),
     "zdt3": ({}, (1.1, 1.1)),
     "zdt4": ({}, (1.1, 100.0)),
@@ -47,10 +47,10 @@ PROBLEMS = {
     "wfg5": ({"n_var": 10, "n_obj": 2}, (2.3, 4.5)),
     "dtlz7": ({"n_var": 11, "n_obj": 2}, (1.1, 4.4)),
 }
-CONTENDERS = {
-    "surrogate": {"name": "surrogate"},
-    "nsga2-40": {"name": "nsga2", "population": 40},
-    "nsga2-100": {"name": "nsga2", "population": 100},
+CONTENDERS: dict[str, SurrogateSettings | EvolutionSettings] = {
+    "surrogate": SurrogateSettings(name="surrogate"),
+    "nsga2-40": EvolutionSettings(name="nsga2", population=40),
+    "nsga2-100": EvolutionSettings(name="nsga2", population=100),
 }
 
 
@@ -70,9 +70,10 @@ def osy_front() -> Floats:
 
 def algorithm(contender: str, space: Space, seed: int) -> Algorithm:
     """A search of the space."""
-    values = CONTENDERS[contender]
-    settings = ALGORITHMS[values["name"]](**values)
-    return (SurrogateSearch if values["name"] == "surrogate" else Evolution)(space, settings, seed)
+    settings = CONTENDERS[contender]
+    if isinstance(settings, SurrogateSettings):
+        return SurrogateSearch(space, settings, seed)
+    return Evolution(space, settings, seed)
 
 
 def search(name: str, contender: str, seed: int, evaluations: int) -> Floats:
@@ -86,8 +87,8 @@ def search(name: str, contender: str, seed: int, evaluations: int) -> Floats:
         objectives=objectives,
     )
     one, found, total = algorithm(contender, space, seed), [], 0
-    while total < evaluations:
-        values = one.ask().values
+    while total < evaluations and (proposal := one.ask()) is not None:
+        values = proposal.values
         points, missed = problem.evaluate(values, return_values_of=["F", "G"])
         violation = np.maximum(missed, 0.0).sum(axis=1)
         one.tell(Scores(objectives=objectives, values=points, violation=violation, constraints=missed))

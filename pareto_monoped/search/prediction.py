@@ -69,11 +69,11 @@ class Prediction:
         products = terms(self._points[rows], self._degree)
         self._coefficients = fitted(products, self._targets[rows] - self._mean, weights)
         # Which jumps fail is learned from all trials, wherever they are.
-        jumped = np.isfinite(standing.costs).all(axis=1)
+        jumped: NDArray[np.bool_] = np.asarray(np.isfinite(standing.costs).all(axis=1))
         self._known = np.flatnonzero(jumped)  # in the order of the trials
         self._risk: Floats | None = None
         if not jumped.all():
-            self._risk = fitted(terms(self._points, 2), 1.0 - jumped[:, None], np.ones(len(jumped)))
+            self._risk = fitted(terms(self._points, 2), (~jumped[:, None]).astype(np.float64), np.ones(len(jumped)))
 
     @property
     def determined(self) -> bool:
