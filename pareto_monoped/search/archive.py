@@ -169,13 +169,24 @@ def _told_most(standing: Standing, count: int) -> NDArray[np.intp]:
     return np.sort(np.concatenate((front, nearest, spread)))
 
 
-@compiled
 def shortfall(points: Floats, front: Floats) -> Floats:
     """Measure how far points are behind a front, shape (n,): the shift in all objectives after which none is dominated.
 
     The additive epsilon indicator (Zitzler et al. 2003) of the front, shape (k, m), against each point, shape (n, m);
     less is better, and a point that gains over the front is below 0.
     """
+    if front.shape[1] > 2:
+        return _shortfall_of_more(points, front)
+    line = front[np.lexsort((-front[:, 1], front[:, 0]))]
+    # The lesser of what is missing in either objective is greatest where the two cross along the front.
+    crossing = np.searchsorted(line[:, 0] - line[:, 1], points[:, 0] - points[:, 1])
+    either = np.stack((np.maximum(crossing - 1, 0), np.minimum(crossing, len(line) - 1)))
+    return np.asarray(np.minimum(points[:, 0] - line[either, 0], points[:, 1] - line[either, 1]).max(axis=0))
+
+
+@compiled
+def _shortfall_of_more(points: Floats, front: Floats) -> Floats:
+    """Compute ``shortfall`` for any number of objectives."""
     columns = points.T.copy()
     result, least = np.full(points.shape[0], -np.inf), np.empty(points.shape[0])
     # The points are the innermost loop: a processor takes several of them at once.

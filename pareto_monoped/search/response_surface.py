@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import combinations_with_replacement
 
 import numpy as np
 from scipy.linalg import solve
@@ -12,12 +11,13 @@ from pareto_monoped.search.algorithm import MOTOR_OF, Floats, MotorChoice, Space
 
 def terms(points: Floats, degree: int) -> Floats:
     """Compute all products of ``degree`` of (1, features), shape (n, f) -> (n, t)."""
-    factors = np.column_stack((np.ones(len(points)), points))
-    first, *others = np.array(list(combinations_with_replacement(range(factors.shape[1]), degree))).T
-    product: Floats = np.take(factors, first, axis=1)
-    for other in others:
-        product *= np.take(factors, other, axis=1)
-    return product
+    factors = np.vstack((np.ones(len(points)), points.T))
+    products, starts = factors, np.arange(len(factors))
+    for _ in range(degree - 1):
+        # Each factor times the products that begin with it or a later one, so that none is there twice.
+        blocks = [factor * products[start:] for factor, start in zip(factors, starts, strict=True)]
+        products, starts = np.vstack(blocks), np.cumsum([0, *map(len, blocks[:-1])])
+    return products.T
 
 
 _RIDGE = 1e-4
