@@ -213,6 +213,7 @@ def _finish(summary: "RunSummary", as_json: bool) -> int:
     code = 130 if summary.stop_reason == "interrupted" else 0
     from pareto_monoped.analysis.remarks import remarks
     from pareto_monoped.definition.study import NO_STRENGTH
+    from pareto_monoped.pareto.growth import AHEAD, left_to_gain
 
     found = remarks(summary.data)
     if as_json:
@@ -228,6 +229,9 @@ def _finish(summary: "RunSummary", as_json: bool) -> int:
         f"front: {summary.front_size} designs, hypervolume {summary.hypervolume:.4f} {summary.hypervolume_unit}"
         + (f", {summary.ill_conditioned} ill-conditioned left out" if summary.ill_conditioned else "")
     )
+    left = left_to_gain(*summary.data.history[["evaluations", "hypervolume"]].to_numpy().T)
+    if left is not None and summary.front_size:
+        note(f"{AHEAD} times as many evaluations would gain about {left:.1%} of this hypervolume")
     strength = () if summary.strength else (NO_STRENGTH,)
     # Without a front, the first remark says why there is none.
     said = (*strength, *found) if summary.front_size else (*found, *strength)

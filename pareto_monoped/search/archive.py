@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+import moocore
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
@@ -18,6 +19,9 @@ _LEAST_SHARE = 0.01
 _LEAST_EXTENT = 0.1
 """Of a front's extent over that of all designs. Our own choice: a gain over a front of two designs, counted in an
 extent of almost nothing, would outweigh any violation."""
+TOLERATED = 0.01
+"""Greatest expected violation up to which a design can gain. Our own choice: many fronts lie on a limit, which the
+model knows to about a percent; with 0, twice the volume of such a front was missed."""
 _MOST = 12_000
 """Designs that an archive holds at most. Our own choice: half as many again as the main job has, so that the time per
 design stays what it is there, however long a search goes on."""
@@ -37,9 +41,10 @@ class Standing:
     posts: NDArray[np.intp]  #: places in ``front`` that stand for its parts, the best in each objective first
     behind: Floats  #: how far each design is behind the front as a share of its extent, plus its violation, shape (n,)
     order: NDArray[np.intp]  #: rows of the designs that jumped, the nearest to the front first
+    tolerated: float  #: expected violation up to which a design can gain
     low: Floats  #: least costs of the front, shape (m,)
     extent: Floats  #: extent of its costs, shape (m,)
-    line: Floats  #: the front's costs as shares of its extent, in the order that ``shortfall`` wants, shape (k, m)
+    line: Floats  #: the front's costs as shares of its extent, shape (k, m)
 
     def scaled(self, costs: Floats) -> Floats:
         """Return costs as shares of the front's extent, shape (n, m)."""
@@ -87,7 +92,20 @@ class Archive:
         self._objectives, self._violation = self._objectives[rows], self._violation[rows]
         self._front, self._fronted = self._front[:0], 0
 
-    def standing(self) -> Standing:
+    def gained(self, scores: Scores) -> float:
+        """Return the hypervolume that scored designs add to the front, or by how much they miss the limits less.
+
+        The front is that of the last ``standing``. Its corner is a tenth of its extent beyond it, our own choice, so
+        that its ends can gain, too.
+        """
+        front = self._objectives[self._front] * self.space.objectives.signs
+        if len(front) == 0:
+            return float(np.maximum(self._violation.min() - scores.violation, 0.0).sum())
+        corner = front.max(axis=0) + 0.1 * np.ptp(front, axis=0)
+        both = np.vstack((front, scores.minimised()[scores.violation == 0.0]))
+        return float(moocore.hypervolume(both, ref=corner) - moocore.hypervolume(front, ref=corner))
+
+    def standing(self, tolerated: float = TOLERATED) -> Standing:
         """Find how the designs stand now."""
         costs = self._costs()
         jumped = np.asarray(np.isfinite(costs).all(axis=1))
@@ -103,8 +121,8 @@ class Archive:
             scaled = (costs[front] - low) / extent
             posts = _posts(scaled)
             points = (np.where(jumped[:, None], costs, low) - low) / extent
-            behind += np.maximum(shortfall(points, along(scaled[posts])), 0.0)
-            line = along(scaled)
+            behind += np.maximum(shortfall(points, scaled[posts]), 0.0)
+            line = scaled
         # Of equals the newest first: a long front is known best where the search is now.
         order = len(behind) - 1 - np.argsort(behind[::-1], kind="stable")
         return Standing(
@@ -113,6 +131,7 @@ class Archive:
             posts=posts,
             behind=behind,
             order=order[jumped[order]],
+            tolerated=tolerated,
             low=low,
             extent=extent,
             line=line,
@@ -153,20 +172,21 @@ def _told_most(standing: Standing, count: int) -> NDArray[np.intp]:
 def shortfall(points: Floats, front: Floats) -> Floats:
     """Measure how far points are behind a front, shape (n,): the shift in all objectives after which none is dominated.
 
-    The additive epsilon indicator (Zitzler et al. 2003) of the front, shape (k, m) with k at least 1 in the order of
-    ``along``, against each point, shape (n, m); less is better, and a point that gains over the front is below 0.
+    The additive epsilon indicator (Zitzler et al. 2003) of the front, shape (k, m), against each point, shape (n, m);
+    less is better, and a point that gains over the front is below 0.
     """
     if front.shape[1] > 2:
         return _shortfall_of_more(points, front)
+    line = front[np.lexsort((-front[:, 1], front[:, 0]))]
     # The lesser of what is missing in either objective is greatest where the two cross along the front.
-    crossing = np.searchsorted(front[:, 0] - front[:, 1], points[:, 0] - points[:, 1])
-    either = np.stack((np.maximum(crossing - 1, 0), np.minimum(crossing, len(front) - 1)))
-    return np.asarray(np.minimum(points[:, 0] - front[either, 0], points[:, 1] - front[either, 1]).max(axis=0))
+    crossing = np.searchsorted(line[:, 0] - line[:, 1], points[:, 0] - points[:, 1])
+    either = np.stack((np.maximum(crossing - 1, 0), np.minimum(crossing, len(line) - 1)))
+    return np.asarray(np.minimum(points[:, 0] - line[either, 0], points[:, 1] - line[either, 1]).max(axis=0))
 
 
 @compiled
 def _shortfall_of_more(points: Floats, front: Floats) -> Floats:
-    """Compute ``shortfall`` for any number of objectives and any order of the front, shape (n, m), (k, m) -> (n,)."""
+    """Compute ``shortfall`` for any number of objectives."""
     columns = points.T.copy()
     result, least = np.full(points.shape[0], -np.inf), np.empty(points.shape[0])
     # The points are the innermost loop: a processor takes several of them at once.
@@ -179,11 +199,6 @@ def _shortfall_of_more(points: Floats, front: Floats) -> Floats:
         for n in range(least.shape[0]):
             result[n] = max(result[n], least[n])
     return result
-
-
-def along(front: Floats) -> Floats:
-    """Sort a front of two objectives, shape (k, 2), by ever less of the first and more of the second; leave others."""
-    return front[np.lexsort((-front[:, 1], front[:, 0]))] if front.shape[1] == 2 else front
 
 
 def _posts(front: Floats) -> NDArray[np.intp]:

@@ -1,78 +1,34 @@
-"""A cheap model of a design's scores: weighted cubic ridge regression on its features. This imports numba.
-
-A cubic of f features has a coefficient for every product of three of (1, features), repeated ones too, in the order of
-``itertools.combinations_with_replacement``.
-"""
+"""A cheap model of a design's scores: weighted polynomial ridge regression on its features."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import combinations_with_replacement
 
 import numpy as np
-from scipy.linalg.lapack import dposv
+from scipy.linalg import solve
 
-from pareto_monoped.compute.compiled import compiled
 from pareto_monoped.search.algorithm import MOTOR_OF, Floats, MotorChoice, Space
 
-_TOGETHER = 64
-"""Points whose sums are in the making at once: ten features of so many are 5 KB, well within the first cache. Our own
-choice."""
 
-
-def cubic_terms(points: Floats) -> Floats:
-    """Compute all products of three of (1, features), shape (n, f) -> (n, t)."""
-    factors = np.column_stack((np.ones(len(points)), points))
-    i, j, k = np.array(list(combinations_with_replacement(range(factors.shape[1]), 3))).T
-    return np.asarray(np.take(factors, i, axis=1) * np.take(factors, j, axis=1) * np.take(factors, k, axis=1))
-
-
-@compiled
-def cubic_values(points: Floats, coefficients: Floats) -> Floats:
-    """Compute ``cubic_terms(points) @ coefficients`` but for rounding, shape (n, f) and (t, k) -> (n, k).
-
-    Nested as by Horner, it takes a multiplication per term and point, stores no terms, and treats each point alone.
-    """
-    count, width, targets = points.shape[0], points.shape[1] + 1, coefficients.shape[1]
-    result = np.empty((count, targets))
-    columns = np.ones((width, _TOGETHER))
-    third, second, first = np.empty(_TOGETHER), np.empty(_TOGETHER), np.empty(_TOGETHER)
-    for start in range(0, count, _TOGETHER):
-        size = min(_TOGETHER, count - start)
-        for k in range(1, width):
-            for n in range(size):
-                columns[k, n] = points[start + n, k - 1]
-        for target in range(targets):
-            t = 0
-            first[:] = 0.0
-            for i in range(width):
-                second[:] = 0.0
-                for j in range(i, width):
-                    third[:] = 0.0
-                    for k in range(j, width):
-                        coefficient = coefficients[t, target]
-                        for n in range(_TOGETHER):
-                            third[n] += coefficient * columns[k, n]
-                        t += 1
-                    for n in range(_TOGETHER):
-                        second[n] += columns[j, n] * third[n]
-                for n in range(_TOGETHER):
-                    first[n] += columns[i, n] * second[n]
-            for n in range(size):
-                result[start + n, target] = first[n]
-    return result
+def terms(points: Floats, degree: int) -> Floats:
+    """Compute all products of ``degree`` of (1, features), shape (n, f) -> (n, t)."""
+    factors = np.vstack((np.ones(len(points)), points.T))
+    products, starts = factors, np.arange(len(factors))
+    for _ in range(degree - 1):
+        # Each factor times the products that begin with it or a later one, so that none is there twice.
+        blocks = [factor * products[start:] for factor, start in zip(factors, starts, strict=True)]
+        products, starts = np.vstack(blocks), np.cumsum([0, *map(len, blocks[:-1])])
+    return products.T
 
 
 _RIDGE = 1e-4
 """Ridge as a share of the mean square of a term: enough for fewer points than terms, small beside 1. Our own choice."""
-_BLOCK = 256
-"""Points whose terms are in memory at once: half a megabyte, which the second cache holds. Our own choice."""
 _LOGARITHMIC = ("stiffness_n_per_m", "torsional_stiffness_n_m_per_rad")
 """Gains that act by their order of magnitude: designs on one front have K from 5 to 200 N/m."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Features:
-    """What the model sees of a point of the space: features scaled to -1 to 1, and their products of up to three.
+    """What the model sees of a point of the space: features scaled to -1 to 1.
 
     A gearbox counts by its real ratio and its mass, a stiffness by log(1 + x), any other variable as it is. Where
     designs choose from several motors, an actuator counts by its mass and by the logarithms of its greatest torque and
@@ -94,10 +50,6 @@ class Features:
         scaled /= self.extent
         scaled -= 1.0
         return scaled
-
-    def terms(self, values: Floats) -> Floats:
-        """Return terms of n points, shape (n, d) -> (n, t); the constant is the first."""
-        return cubic_terms(self.scaled(values))
 
 
 def features_of(space: Space) -> Features:
@@ -169,29 +121,13 @@ def _actuators(space: Space, tables: Mapping[str, Floats], name: str, values: Fl
     return np.column_stack((torque + ratio, speed - ratio, mass))
 
 
-def fitted(points: Floats, targets: Floats, weights: Floats) -> Floats:
-    """Return coefficients, (t, k), of points, (n, f), targets, (n, k), and weights, (n,), for ``cubic_values``."""
-    gram, right = _normal_equations(points, targets, weights)
+def fitted(products: Floats, targets: Floats, weights: Floats) -> Floats:
+    """Return coefficients, (t, k), of ``terms`` of n points, (n, t), from targets, (n, k), and weights, (n,)."""
+    weighted = (products * weights[:, None]).T
+    gram = weighted @ products
     # The first term is the constant, whose mean square is the sum of the weights; it is not held back.
     ridge = np.full(len(gram), _RIDGE * weights.sum())
     ridge[0] = 1e-9 * weights.sum()
     gram[np.diag_indices_from(gram)] += ridge
-    _, coefficients, failed = dposv(gram, right, lower=True)
-    if failed:
-        raise np.linalg.LinAlgError(f"the model's equations for {len(points)} points have no solution")
-    return np.ascontiguousarray(coefficients)
-
-
-def _normal_equations(points: Floats, targets: Floats, weights: Floats) -> tuple[Floats, Floats]:
-    """Return weighted sums of products of pairs of terms, right below the diagonal, and of terms with targets."""
-    first = cubic_terms(points[:1])
-    size, half = first.shape[1], first.shape[1] // 2
-    gram, right = np.zeros((size, size)), np.zeros((size, targets.shape[1]))
-    for start in range(0, len(points), _BLOCK):
-        rows = slice(start, start + _BLOCK)
-        terms = cubic_terms(points[rows])
-        weighted = (terms * weights[rows, None]).T
-        gram[:half, :half] += weighted[:half] @ terms[:, :half]
-        gram[half:] += weighted[half:] @ terms
-        right += weighted @ targets[rows]
-    return gram, right
+    coefficients: Floats = solve(gram, weighted @ targets, assume_a="pos")
+    return coefficients

@@ -5,7 +5,6 @@ looks at the ends of each motor's own front, so that none is given up too early.
 """
 
 from collections.abc import Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -16,11 +15,11 @@ from scipy.spatial.distance import cdist
 
 from pareto_monoped.definition.algorithms import SurrogateSettings
 from pareto_monoped.search.algorithm import Algorithm, Floats, Proposal, Scores, Space
-from pareto_monoped.search.archive import Archive, Standing
-from pareto_monoped.search.prediction import CURIOSITY, LENIENT_PENALTY, MISSED, Prediction, gains, ranked, unlike
+from pareto_monoped.search.archive import TOLERATED, Archive, Standing
+from pareto_monoped.search.prediction import CURIOSITY, PENALTY, Prediction, gains, ranked, unlike
 from pareto_monoped.search.response_surface import Features, features_of
 from pareto_monoped.search.seen import Seen, drawn
-from pareto_monoped.search.variation import exchanges, offspring, scans, small_steps, spread, swaps
+from pareto_monoped.search.variation import offspring, scans, small_steps, spread
 
 
 def one_thread() -> Any:
@@ -117,7 +116,7 @@ def ends_of_least_tried(
             costs, violation = prediction.fine(near)
             designs.append(near)
             away = cdist(features.scaled(near), archive.points).min(axis=1)
-            worth = -standing.scaled(costs)[:, objective] - LENIENT_PENALTY * violation
+            worth = -standing.scaled(costs)[:, objective] - PENALTY * violation
             promise.append(worth + CURIOSITY * np.minimum(away, 1.0))
             best = near[promise[-1].argmax()][None]
         yield np.vstack(designs)[np.argsort(-np.concatenate(promise), kind="stable")]
@@ -140,10 +139,6 @@ _REFINED = 3
 _STEPS = 4
 """Small steps that are tried from each of them. Our own choice."""
 
-_SWAPPED = 4
-"""Designs of the front whose gearboxes are each replaced by all others. Our own choice: a gearbox that gains a
-millimetre is one of 40, which steps at random rarely try where the gain is."""
-
 _ON_BOUND = (0.25, 0.45)
 """Share of a variable's values on either bound in a quarter of the first designs and in the next quarter, and in either
 half of those anywhere. Our own choice: many of the best designs have most of their variables on bounds, some of them in
@@ -151,23 +146,32 @@ a corner far from all others, and polynomials are determined best by points ther
 _ANYWHERE = 1000
 """Designs anywhere in the space from which explorers are chosen and climbs begin. Our own choice."""
 _EXPLORING = 0.1
-"""Share of a generation that explores. Our own choice: without it, some searches miss a part of the front that lies
-far from the rest in the space."""
+"""Share of what the model chooses that explores. Our own choice: without it, some searches miss a part of the front
+that lies far from the rest in the space."""
+_SEEKING = 0.5
+"""The same as long as no design holds the limits. Our own choice: the least violation near by may be that of the wrong
+gearboxes."""
 
 _PLAIN = 0.2
-"""Share of a generation that is plain evolution, which the model does not rank. Our own choice: on Case C, five seeds
-are no worse with it, and where the model knows little, it tries what the model would not. Within 1,000 evaluations,
-ZDT4 is reached, and Kursawe nearly as well as by NSGA-II."""
+"""Share of plain evolution, which the model does not rank, when the model begins. Our own choice."""
+_PLAIN_ENDS = (0.1, 0.95)
+"""Least and greatest share of it. Our own choice: each side keeps a few designs, or what it gains is not seen."""
+_HELD = 0.7
+"""Share of what the model chooses that holds the limits, below which half as much is tolerated next time, above which
+twice as much. Our own choice: near what is left beside explorers, of which few hold tight limits."""
+_LEARNING = 0.1
+"""Weight of a new generation in that share: it follows the gains of about the last ten. Our own choice."""
 _CLIMBS = 6
 """Climbs that begin anywhere; as many begin on the front, and half as many close to it. Our own choice."""
-_EXCHANGED = 2
-"""Those of the front whose links, gearboxes, or both are exchanged first. Our own choice: legs with a long thigh and
-with a long shank come within a percent of each other, and steps do not lead from one to the other."""
 _CLOSE = 1000
 """Designs nearest the front that climbs begin at. Our own choice: a few times as many as the front has."""
 
 _OF_A_MOTOR = 2
 """Designs of the least tried motor per generation and objective. Our own choice, see ``ends_of_least_tried``."""
+
+_SMALLER = 4
+"""What a population is divided by as long as no design holds the limits. Our own choice: the model errs most then, and
+learns from every generation."""
 
 _FEW = 50
 """Generations of the population's own size. Our own choice: 2,000 designs with the default population."""
@@ -178,10 +182,10 @@ climbs, take a tenth less time for 8,000 designs of Case C, but one of 15 seeds 
 the best known at 1.1 m, where all 15 are within 0.3 percent with twice as many."""
 
 
-def _unranked(values: Floats, violation: Floats, count: int, generator: np.random.Generator) -> Floats:
+def _unranked(values: Floats, missing: NDArray[np.bool_], count: int, generator: np.random.Generator) -> Floats:
     """Choose ``count`` of n offspring at random, of those that are not expected to miss a limit if there are enough."""
     order = generator.permutation(len(values))
-    return values[order[np.argsort(violation[order] > MISSED, kind="stable")[:count]]]
+    return values[order[np.argsort(missing[order], kind="stable")[:count]]]
 
 
 class SurrogateSearch(Algorithm):
@@ -189,14 +193,16 @@ class SurrogateSearch(Algorithm):
 
     The first generations are spread over the space, half of them over its bounds and corners, too. Later generations
     vary the designs on the front and predict the offspring's scores (``Prediction``). The most promising are varied
-    again in small steps, a few designs of the front get every other gearbox, and, once the model has a design for each
-    of its terms, some climb (``climbs``): from anywhere, from the front and close to it, and with links or gearboxes
-    exchanged. Of all these, the search asks for those that gain most over the front, the best of each part of it first.
-    A tenth of each generation explores far from all simulated designs, and a fifth is plain evolution. Where motors are
-    chosen, the motor with the fewest designs gets some at the ends of its own front (``ends_of_least_tried``).
+    again in small steps, and, once the model has a design for each of its terms, some climb (``climbs``): from
+    anywhere, from the front and close to it. Of all these, the search asks for those that gain most over the front, the
+    best of each part of it first; without a front, for those that miss the limits least and are unlike each other. Some
+    explore far from all simulated designs. A share is plain evolution, the greater, the more that gains beside what the
+    model chooses. Where motors are chosen, the motor with the fewest designs gets some at the ends of its own front
+    (``ends_of_least_tried``).
 
-    Every generation has its own random generator, whose seed follows from the study's. The simulated designs are
-    therefore the whole state, and a search rebuilt from them, also with a larger budget, continues bit for bit.
+    Every generation has its own random generator, whose seed follows from the study's. The simulated designs and a few
+    numbers are therefore the whole state, and a search rebuilt from them, also with a larger budget, continues bit for
+    bit.
     """
 
     def __init__(self, space: Space, settings: SurrogateSettings, seed: int) -> None:
@@ -206,8 +212,12 @@ class SurrogateSearch(Algorithm):
         self._generation = 0
         self._seen = Seen()
         self._archive = Archive(space)
+        self._standing = self._archive.standing()
         self._features: Features = features_of(space)
         self._asked = np.zeros((0, len(space.names)))
+        self._plain = 0  # designs of plain evolution, the last of those asked for
+        self._plain_share, self._tolerated = _PLAIN, TOLERATED
+        self._drawing = True  # whether designs are still spread over the space
 
     @property
     def _times(self) -> int:
@@ -217,42 +227,67 @@ class SurrogateSearch(Algorithm):
     @property
     def _size(self) -> int:
         """Designs of the next generation."""
-        return self._settings.population * self._times
+        if self._drawing or len(self._standing.front):
+            return self._settings.population * self._times
+        return max(1, self._settings.population // _SMALLER)
 
     def ask(self) -> Proposal | None:
         """Return designs spread over the space, later the most promising offspring; None if there is no new design."""
         generator = np.random.default_rng([self._seed, self._generation])
-        size = self._size
-        standing = self._archive.standing()
+        standing = self._standing = self._archive.standing(self._tolerated)
+        if self._generation == self._settings.drawn_generations or (self._generation and len(standing.front) == 0):
+            self._drawing = False  # where no drawn design holds the limits, drawing more rarely finds one
+        self._plain, size = 0, self._size
         if self._generation == 0 and self._space.begin is not None:
             chosen = self._space.begin()[:size]
-        elif self._generation < self._settings.drawn_generations or len(standing.order) == 0:
+        elif self._drawing or len(standing.order) == 0:
             corners = (size - size // 2) // 2
             counts = (size // 2, size - size // 2 - corners, corners)
             parts = zip(counts, (0.0, *_ON_BOUND), strict=True)
             chosen = np.vstack([spread(self._space, count, generator, share) for count, share in parts])
         else:
             chosen = self._promising(standing, generator)
-        chosen = chosen[self._seen.new(chosen)]
+        new = self._seen.new(chosen)
+        self._plain = int(np.count_nonzero(new[len(new) - self._plain :]))
+        chosen = chosen[new]
         if len(chosen) == 0:
             chosen = drawn(self._space, self._seen, generator, size)
         self._asked = chosen
         return Proposal(values=chosen) if len(chosen) else None
 
     def tell(self, scores: Scores) -> None:
-        """Add the designs to what the model is fitted to."""
+        """Add the designs to what the model is fitted to; compare what model and plain evolution gained."""
+        by_model = len(self._asked) - self._plain
+        if self._plain and by_model:
+            model = self._archive.gained(scores.of(slice(by_model))) / by_model
+            plain = self._archive.gained(scores.of(slice(by_model, None))) / self._plain
+            if model + plain > 0.0:
+                share = self._plain_share + _LEARNING * (plain / (model + plain) - self._plain_share)
+                self._plain_share = min(max(share, _PLAIN_ENDS[0]), _PLAIN_ENDS[1])
+            if len(self._standing.front):
+                held = float(np.mean(scores.violation[:by_model] == 0.0))
+                self._tolerated = min(self._tolerated * (2.0 if held > _HELD else 0.5), TOLERATED)
         self._add(self._asked, scores)
         self._generation += 1
 
     def state(self) -> dict[str, Any]:
-        """Return the number of generations; the designs are in the database."""
-        return {"generation": self._generation}
+        """Return all but the designs, which are in the database."""
+        return {
+            "generation": self._generation,
+            "plain_share": self._plain_share,
+            "tolerated": self._tolerated,
+            "drawing": self._drawing,
+        }
 
     def restore(self, state: dict[str, Any], history: Iterable[tuple[Floats, Scores]]) -> None:
         """Add the designs of the history."""
         for values, scores in history:
             self._add(values, scores)
         self._generation = int(state["generation"])
+        # Earlier versions stored the number alone.
+        self._plain_share = float(state.get("plain_share", _PLAIN))
+        self._tolerated = float(state.get("tolerated", TOLERATED))
+        self._drawing = bool(state.get("drawing", self._generation < self._settings.drawn_generations))
 
     def _add(self, values: Floats, scores: Scores) -> None:
         self._seen.add(values)
@@ -260,75 +295,76 @@ class SurrogateSearch(Algorithm):
 
     def _promising(self, standing: Standing, generator: np.random.Generator) -> Floats:
         """Choose the most promising of many new designs; all of them if they are no more than a generation has."""
-        with one_thread(), ThreadPoolExecutor(1) as helper:
-            # The model needs no offspring, and offspring no model: each has a core.
-            prediction = Prediction(self._archive, standing, self._features, helper)
-            fitting = helper.submit(prediction.fit)
-            values = offspring(self._archive, standing, self._settings, generator)
-            values = values[self._seen.new(values)]
-            if len(values) <= self._size:
-                return values
-            prediction.look_around()
-            fitting.result()
+        values = offspring(self._archive, standing, self._settings, generator)
+        values = values[self._seen.new(values)]
+        if len(values) <= self._size:
+            return values
+        with one_thread():
+            prediction = Prediction(self._archive, standing, self._features)
             return self._most_promising(values, prediction, standing, generator)
 
     def _most_promising(
         self, values: Floats, prediction: Prediction, standing: Standing, generator: np.random.Generator
     ) -> Floats:
-        """Choose a generation from offspring, shape (n, d), small steps around the best, and climbs; explorers last."""
-        size = self._size
-        roughly = prediction.rough(values)
-        plain = _unranked(values, roughly[1], round(_PLAIN * size) if len(standing.front) else 0, generator)
+        """Choose a generation from offspring, shape (n, d), small steps around the best, and climbs.
+
+        Explorers come behind these, plain evolution last.
+        """
+        size, roughly = self._size, prediction.rough(values)
+        plain = _unranked(values, roughly[1] > standing.tolerated, round(self._plain_share * size), generator)
         best = values[ranked(*roughly, standing)[: _REFINED * size]]
-        swapped = swaps(
-            self._space, self._archive.values[generator.permutation(standing.front)[: self._times * _SWAPPED]]
-        )
-        values = np.vstack((best, small_steps(self._space, best, _STEPS, generator), swapped))
+        values = np.vstack((best, small_steps(self._space, best, _STEPS, generator)))
         values = values[self._seen.new(values)]
         costs, violation = prediction.fine(values)
-        explorers, count = values[:0], round(_EXPLORING * size)
+        explorers, count = values[:0], round((_EXPLORING if len(standing.front) else _SEEKING) * (size - len(plain)))
+        known = self._archive.points
+        anywhere = np.vstack([spread(self._space, _ANYWHERE // 2, generator, share) for share in _ON_BOUND])
+        expected = prediction.rough(anywhere)
+        if prediction.determined or len(standing.front) == 0:
+            start = self._starts(anywhere[ranked(*expected, standing)], standing, generator)
+            climbed = climbs(self._space, start, prediction, standing, generator)
+            values, costs = np.vstack((values, climbed.values)), np.vstack((costs, climbed.costs))
+            violation = np.concatenate((violation, climbed.violation))
+            ends = climbed.ends
+            expected_there = climbed.costs[ends], climbed.violation[ends]
+            explorers = self._afar(climbed.values[ends], expected_there, standing, known, count // 2)
+            known = np.vstack((known, self._features.scaled(explorers)))
+        if self._space.choices and len(standing.front):
+            motors = ends_of_least_tried(self._features, self._archive, standing, prediction, generator)
+            firsts = np.vstack([best[self._seen.new(best)][:_OF_A_MOTOR] for best in motors])
+            explorers = np.vstack((explorers, firsts[: size // 4]))
+        others = self._afar(anywhere, expected, standing, known, max(count - len(explorers), 0))
+        # A climb from anywhere may have ended where it began, or where plain evolution leads.
+        others = np.vstack((explorers, others, plain))
+        new = self._seen.new(np.vstack((others, values)))
+        fresh = new[len(others) :]
+        values, costs, violation = values[fresh], costs[fresh], violation[fresh]
+        self._plain = len(plain)
+        left = max(size - len(others), 0)
         if len(standing.front):
-            known = self._archive.points
-            anywhere = np.vstack([spread(self._space, _ANYWHERE // 2, generator, share) for share in _ON_BOUND])
-            expected = prediction.rough(anywhere)
-            if prediction.determined:
-                promising = anywhere[ranked(*expected, standing)[: self._times * _CLIMBS]]
-                climbed = self._climbs(promising, prediction, standing, generator)
-                values, costs = np.vstack((values, climbed.values)), np.vstack((costs, climbed.costs))
-                violation = np.concatenate((violation, climbed.violation))
-                ends = climbed.ends
-                expected_there = climbed.costs[ends], climbed.violation[ends]
-                explorers = self._afar(climbed.values[ends], expected_there, standing, known, count // 2)
-                known = np.vstack((known, self._features.scaled(explorers)))
-            if self._space.choices:
-                motors = ends_of_least_tried(self._features, self._archive, standing, prediction, generator)
-                firsts = np.vstack([best[self._seen.new(best)][:_OF_A_MOTOR] for best in motors])
-                explorers = np.vstack((explorers, firsts[: size // 4]))
-            others = self._afar(anywhere, expected, standing, known, max(count - len(explorers), 0))
-            explorers = np.vstack((explorers, others))
-            # A climb from anywhere may have ended where it began.
-            explorers = explorers[self._seen.new(explorers)]
-        # Where climbs ended may be among the explorers, too.
-        others = np.vstack((explorers, plain))
-        new = self._seen.new(np.vstack((others, values)))[len(others) :]
-        values, costs, violation = values[new], costs[new], violation[new]
-        chosen = values[ranked(costs, violation, standing)[: size - len(others)]]
-        return np.vstack((chosen, others))
+            return np.vstack((values[ranked(costs, violation, standing)[:left]], others))
+        known = np.vstack((self._archive.points, self._features.scaled(others)))
+        # Distance counts the less, the nearer a design has come to the limits.
+        least = min(float(standing.behind.min()), 1.0)
+        return np.vstack((self._afar(values, (costs, violation), standing, known, left, least), others))
 
-    def _climbs(
-        self, promising: Floats, prediction: Prediction, standing: Standing, generator: np.random.Generator
-    ) -> Climbs:
-        """Climb from promising designs anywhere, from the front and close behind it, and from exchanged designs."""
-        count, exchanged = self._times * _CLIMBS, self._times * _EXCHANGED
-        front = self._archive.values[generator.permutation(standing.front)[:count]]
-        close = self._archive.values[generator.permutation(standing.order[:_CLOSE])[: count // 2]]
-        start = np.vstack((promising, exchanges(self._space, front[:exchanged]), front[exchanged:], close))
-        return climbs(self._space, start, prediction, standing, generator)
+    def _starts(self, promising: Floats, standing: Standing, generator: np.random.Generator) -> Floats:
+        """Return designs that climbs begin at: promising ones anywhere, of the front, and close behind it."""
+        count = self._times * _CLIMBS
+        front = generator.permutation(standing.front)[:count]
+        close = generator.permutation(standing.order[:_CLOSE])[: count // 2]
+        return np.vstack((promising[:count], self._archive.values[front], self._archive.values[close]))
 
     def _afar(
-        self, values: Floats, expected: tuple[Floats, Floats], standing: Standing, known: Floats, count: int
+        self,
+        values: Floats,
+        expected: tuple[Floats, Floats],
+        standing: Standing,
+        known: Floats,
+        count: int,
+        curiosity: float = CURIOSITY,
     ) -> Floats:
         """Choose ``count`` of n designs, shape (n, d), that promise much and are far from points that are known."""
         new = self._seen.new(values)
         values, costs, violation = values[new], expected[0][new], expected[1][new]
-        return values[unlike(costs, violation, standing, self._features.scaled(values), known, count)]
+        return values[unlike(costs, violation, standing, self._features.scaled(values), known, count, curiosity)]

@@ -9,8 +9,6 @@ from pareto_monoped.search.algorithm import MOTOR_OF, Floats, Space
 from pareto_monoped.search.archive import Archive, Standing
 from pareto_monoped.search.space import exchanged, mutated
 
-_PARENTS = 100
-"""Fewest parents. A small front is filled up with the designs nearest to it. Our own choice: 2.5 populations."""
 _NEIGHBOURS = 3
 """How many places on the front lie between two parents at most where neighbours are crossed. Our own choice."""
 _STEP = (1e-3, 0.1)
@@ -19,8 +17,6 @@ _EXCHANGED = 0.5
 """Probability that a variable is crossed, and that it changes sides; pymoo's own numbers."""
 _SCANNED = 3
 """Values that a scan tries of each variable. Our own choice: both bounds and one between."""
-_ALIKE = (("thigh_length_m", "shank_length_m"), ("knee_ratio", "hip_ratio"))
-"""Variables of one kind, of the two links and of the two joints."""
 
 
 def spread(space: Space, count: int, generator: np.random.Generator, on_bound: float = 0.0) -> Floats:
@@ -46,7 +42,8 @@ def offspring(
     Half have any two parents, which keeps the search broad, half two neighbours on the front, which refines it.
     """
     front = standing.front
-    parents = front if len(front) >= _PARENTS else standing.order[:_PARENTS]
+    # A small front is filled up with the designs nearest to it.
+    parents = front if len(front) >= settings.population else standing.order[: settings.population]
     line = front if len(front) > 1 else parents
     count = max(1, settings.offspring * settings.population // 4)
     first = generator.integers(0, len(line), count)
@@ -99,26 +96,6 @@ def small_steps(space: Space, values: Floats, count: int, generator: np.random.G
     return _other_choices(space, start, near, generator) if space.choices else near
 
 
-def swaps(space: Space, values: Floats) -> Floats:
-    """Return every other choice of one gearbox or of one motor for each of n designs, all else equal, shape (k, d)."""
-    found = [values[:0]]
-    for column, name in enumerate(space.names):
-        if name in space.gears:
-            choices = [np.arange(len(space.gears[name]), dtype=np.float64)] * len(values)
-        elif name in space.listed:
-            last = space.last_gears(name)[space.motor_of(name, values)]
-            choices = [np.arange(most + 1) / max(most, 1) for most in last.tolist()]
-        elif name in MOTOR_OF:
-            choices = [np.arange(space.upper[column] + 1.0)] * len(values)
-        else:
-            continue
-        for design, others in zip(values, choices, strict=True):
-            swapped = np.repeat(design[None], len(others), axis=0)
-            swapped[:, column] = others
-            found.append(swapped)
-    return space.snap(np.vstack(found))
-
-
 def scans(space: Space, values: Floats, generator: np.random.Generator) -> Floats:
     """Return k designs for each of n with one variable elsewhere, all else equal, shape (n, d) -> (n * k, d).
 
@@ -135,33 +112,6 @@ def scans(space: Space, values: Floats, generator: np.random.Generator) -> Float
         here = (1.0 - share[:, column]) * lower[column] + share[:, column] * upper[column]
         scanned[:, _SCANNED * column : _SCANNED * (column + 1), column] = here
     return space.snap(scanned.reshape(-1, dimensions))
-
-
-def exchanges(space: Space, values: Floats) -> Floats:
-    """Return each of n designs with its links exchanged, with its gearboxes exchanged, and with both, shape (k, d).
-
-    Where the bounds differ, a value stays within its own; a gearbox becomes that of the nearest ratio, or with several
-    motors that of the same share of the list. There are none if a study frees only one variable of each pair.
-    """
-    found = values
-    for pair in _ALIKE:
-        if set(pair) <= set(space.names):
-            first, second = (space.names.index(name) for name in pair)
-            exchanged_pair = found.copy()
-            exchanged_pair[:, first] = _as_other(space, pair[1], pair[0], found[:, second])
-            exchanged_pair[:, second] = _as_other(space, pair[0], pair[1], found[:, first])
-            found = np.vstack((found, exchanged_pair))
-    return space.snap(found[len(values) :])
-
-
-def _as_other(space: Space, name: str, other: str, column: Floats) -> Floats:
-    """Return values of one variable as those of another of its kind, shape (n,)."""
-    if name in space.gears and other in space.gears:
-        ratios = np.array([gear.ratio for gear in space.gears[name]])[column.astype(np.intp)]
-        others = np.array([gear.ratio for gear in space.gears[other]])
-        return np.asarray(np.abs(ratios[:, None] - others).argmin(axis=1), dtype=np.float64)
-    place = space.names.index(other)
-    return np.asarray(np.clip(column, space.lower[place], space.upper[place]))
 
 
 def _other_choices(space: Space, start: Floats, near: Floats, generator: np.random.Generator) -> Floats:

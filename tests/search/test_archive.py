@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pareto_monoped.search.archive import _posts, along, shortfall
+from pareto_monoped.search.archive import _posts, shortfall
 from pareto_monoped.search.prediction import _in_turns
 
 
@@ -23,7 +23,7 @@ def test_shortfall_is_the_least_shift_by_definition(known, objectives):
     points, front = np.random.default_rng(known).random((300, objectives)), staircase(known, objectives, known)
     points[:known] = front[:known]  # points on the front, too
     wanted = [max(min(p - f for p, f in zip(point, member, strict=True)) for member in front) for point in points]
-    assert shortfall(points, along(front)).tolist() == wanted
+    assert shortfall(points, front).tolist() == wanted
 
 
 def test_posts_are_the_best_and_then_always_the_farthest_from_all_chosen():

@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pareto_monoped.search.archive import Archive
-from pareto_monoped.search.prediction import Prediction, gains
+from pareto_monoped.search.archive import TOLERATED, Archive
+from pareto_monoped.search.prediction import Prediction, gains, unlike
 from pareto_monoped.search.response_surface import features_of
 from pareto_monoped.search.surrogate import SurrogateSearch
 from pareto_monoped.search.variation import spread
@@ -64,30 +64,27 @@ def test_a_search_with_narrow_limits_stays_where_they_hold():
         violation = np.maximum(missed, 0.0).sum(axis=1)
         held.append((violation == 0.0).mean())
         algorithm.tell(replace(scores, violation=violation, constraints=missed))
-    assert np.mean(held[:3]) < 0.05
+    assert held[0] == 0.0
     assert np.mean(held[-10:]) > 0.7
 
 
-def test_failed_jumps_near_by_count_as_a_violation():
+def test_where_jumps_fail_is_learned_from_all_trials():
+    """Also from those far behind the front, and wherever the next designs are."""
     values = np.unique(spread(SPACE, 400, np.random.default_rng(2)), axis=0)
     archive = Archive(SPACE)
     archive.add(values, failing(values))
     prediction = Prediction(archive, archive.standing(), features_of(SPACE))
     many = spread(SPACE, 2000, np.random.default_rng(8))
-    points, known = features_of(SPACE).scaled(many), archive.points
-    nearest = np.argsort(((points[:, None] - known[None]) ** 2).sum(axis=2), axis=1)[:, :4]
-    share = fails(values)[nearest].mean(axis=1)
     for predict in (prediction.rough, prediction.fine):
         _, violation = predict(many)
-        assert violation == pytest.approx(share, abs=1e-12)
-    assert share[many[:, 0] > 0.45].min() > 0.2
-    assert share[many[:, 0] < 0.40].max() < 0.3
+        assert (violation[many[:, 0] > 0.45] > TOLERATED).all()
+        assert (violation[many[:, 0] < 0.38] <= TOLERATED).mean() > 0.9
 
 
-def test_where_hardly_any_jump_fails_no_neighbour_is_looked_for():
+def test_without_a_failed_jump_only_limits_count():
     archive = archive_of(300)
     prediction = Prediction(archive, archive.standing(), features_of(SPACE))
-    assert prediction._tree is None
+    assert (prediction.fine(spread(SPACE, 500, np.random.default_rng(3)))[1] == 0.0).all()
 
 
 def test_a_search_learns_where_jumps_fail():
@@ -97,21 +94,90 @@ def test_a_search_learns_where_jumps_fail():
         failed.append(fails(values).mean())
         algorithm.tell(failing(values))
     assert np.mean(failed[:3]) > 0.3
-    assert np.mean(failed[-8:]) < 0.3
+    assert np.mean(failed[-8:]) < 0.1
 
 
-def test_a_fifth_of_a_generation_is_plain_evolution(monkeypatch):
-    """Whatever the model thinks of it, if it is not expected to miss a limit."""
-    algorithm = SurrogateSearch(SPACE, SETTINGS, 6)
-    for _ in range(6):
+def test_drawing_ends_early_where_no_design_holds_the_limits():
+    """The second generation already misses them by less than the best of those drawn."""
+    algorithm, violations = SurrogateSearch(SPACE, SETTINGS, 2), []
+    for _ in range(2):
         values = algorithm.ask().values
-        algorithm.tell(scored(values))
-    monkeypatch.setattr("pareto_monoped.search.surrogate.ranked", lambda costs, *_: np.arange(len(costs))[::-1])
-    upside_down = SurrogateSearch(SPACE, SETTINGS, 6)
-    upside_down.restore(algorithm.state(), iter([(algorithm._archive.values, scored(algorithm._archive.values))]))
-    asked = upside_down.ask().values
-    monkeypatch.undo()
-    usual = algorithm.ask().values
-    same = (asked[:, None] == usual[None]).all(axis=2).any(axis=1)
-    assert same[-4:].all()
-    assert not same[:10].all()
+        missed = np.abs(values[:, 0] - 0.3173) / 0.2 + np.abs(np.log1p(values[:, 2]) - 3.0)
+        violations.append(missed)
+        algorithm.tell(replace(scored(values), violation=missed, constraints=missed[:, None]))
+    assert violations[1].min() < violations[0].min()
+    assert np.median(violations[1][: -algorithm._plain]) < 0.5 * np.median(violations[0])
+
+
+def test_without_a_front_designs_that_promise_alike_are_unlike_each_other():
+    """Those nearest the limits on the model are all in one place, where it may be wrong."""
+    values = np.unique(spread(SPACE, 200, np.random.default_rng(4)), axis=0)
+    archive, missed = Archive(SPACE), 0.2 + np.abs(values[:, 0] - 0.4)
+    archive.add(values, replace(scored(values), violation=missed, constraints=missed[:, None]))
+    standing, points = archive.standing(), np.array([[0.0, 0.0], [0.0, 0.01], [0.9, 0.0]])
+    costs, violation = np.zeros((3, 2)), np.array([0.2, 0.2, 0.25])
+    assert unlike(costs, violation, standing, points, np.array([[0.0, -0.5]]), 2, 0.2) == [2, 1]
+    # The worse one is too bad if a place that is nearly good enough is known.
+    assert unlike(costs, np.array([0.2, 0.2, 0.9]), standing, points, np.array([[0.0, -0.5]]), 2, 0.2) == [1, 0]
+
+
+def test_less_is_tolerated_after_choices_that_miss_the_limits_and_more_after_those_that_hold():
+    """Where the model knew a violation of 0.9 percent, it promised gains over a front of one design for ever."""
+    algorithm = SurrogateSearch(SPACE, SETTINGS, 5)
+    for _ in range(3):
+        algorithm.tell(scored(algorithm.ask().values))
+    tolerated = []
+    for missed in (0.005, 0.005, -0.1, -0.1, -0.1):
+        scores = scored(algorithm.ask().values)
+        violation = np.full(len(scores.values), max(missed, 0.0))
+        algorithm.tell(replace(scores, violation=violation, constraints=np.full((len(violation), 1), missed)))
+        tolerated.append(algorithm.state()["tolerated"])
+    assert tolerated == [0.005, 0.0025, 0.005, 0.01, 0.01]
+    standing = archive_of().standing(0.005)
+    ahead = standing.low - 5.0 * standing.extent
+    assert gains(ahead[None], np.array([0.006]), standing)[0] < 0.0
+
+
+def shares_of_plain_evolution(generations=25):
+    algorithm, shares = SurrogateSearch(SPACE, SETTINGS, 6), []
+    for _ in range(generations):
+        algorithm.tell(scored(algorithm.ask().values))
+        shares.append(algorithm.state()["plain_share"])
+    return shares
+
+
+def test_plain_evolution_grows_where_the_model_misleads_and_shrinks_where_it_leads(monkeypatch):
+    led = shares_of_plain_evolution()
+    assert led[0] == led[2] == 0.2  # before the model begins, there is nothing to compare
+    assert max(led) < 0.5
+    assert np.mean(led[-5:]) < 0.25
+    fine = Prediction.fine
+
+    def upside_down(self, values):
+        costs, violation = fine(self, values)
+        return -costs, violation
+
+    monkeypatch.setattr(Prediction, "fine", upside_down)
+    misled = shares_of_plain_evolution()
+    assert np.mean(misled[-5:]) > 2.0 * np.mean(led[-5:])
+
+
+def test_what_a_generation_gains_is_the_hypervolume_that_it_adds():
+    """Two designs, a tenth of whose extent is the margin of the corner; then without a front, the lesser violation."""
+    archive = Archive(SPACE)
+    two = replace(
+        scored(SPACE.lower[None].repeat(2, axis=0)),
+        values=np.array([[0.6, 10.0], [1.6, 30.0]]),
+        violation=np.zeros(2),
+        constraints=-np.ones((2, 1)),
+    )
+    archive.add(np.vstack((SPACE.lower, SPACE.upper)), two)
+    archive.standing()
+    new = replace(two, values=np.array([[1.1, 15.0], [0.5, 35.0]]))
+    # From (0.6, 10) and (1.6, 30) to the corner (0.5, 32), the new point adds 0.5 m by 15 J.
+    assert archive.gained(new) == pytest.approx(0.5 * 15.0)
+    assert archive.gained(replace(new, violation=np.array([0.1, 0.0]))) == 0.0
+    barren = Archive(SPACE)
+    barren.add(np.vstack((SPACE.lower, SPACE.upper)), replace(two, violation=np.array([0.5, 0.8])))
+    barren.standing()
+    assert barren.gained(replace(two, violation=np.array([0.3, 0.6]))) == pytest.approx(0.2)

@@ -1,6 +1,5 @@
 """The parts of the surrogate-assisted search against plain versions of them, and the search on a known function."""
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -8,12 +7,12 @@ import pytest
 
 from pareto_monoped.definition.algorithms import SurrogateSettings
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
-from pareto_monoped.search.algorithm import Gear, MotorChoice, MotorKind, Scores, Space
-from pareto_monoped.search.archive import Archive, along, shortfall
+from pareto_monoped.search.algorithm import Gear, Scores, Space
+from pareto_monoped.search.archive import Archive, shortfall
 from pareto_monoped.search.prediction import Prediction, _training, ranked, unlike
-from pareto_monoped.search.response_surface import cubic_terms, features_of, fitted
+from pareto_monoped.search.response_surface import features_of, fitted, terms
 from pareto_monoped.search.surrogate import SurrogateSearch, climbs
-from pareto_monoped.search.variation import offspring, small_steps, spread, swaps
+from pareto_monoped.search.variation import offspring, small_steps, spread
 
 GEARS = tuple(Gear(ratio=4.0 + 0.3 * k, mass_kg=0.5 + 0.02 * (k - 4) ** 2) for k in range(12))
 SPACE = Space(
@@ -54,12 +53,12 @@ def test_the_model_is_exact_for_cubics_of_its_features():
     generator = np.random.default_rng(2)
     features = features_of(SPACE)
     known, new = spread(SPACE, 400, generator), spread(SPACE, 100, generator)
-    terms = features.terms(known)
-    assert terms.shape == (400, 35)  # 4 features: 1 + 4 + 10 + 20
+    products = terms(features.scaled(known), 3)
+    assert products.shape == (400, 35)  # 4 features: 1 + 4 + 10 + 20
     truth = generator.standard_normal((35, 2))
-    coefficients = fitted(features.scaled(known), terms @ truth, np.ones(400))
-    error = features.terms(new) @ (coefficients - truth)
-    assert np.abs(error).max() < 0.02 * np.abs(terms @ truth).max()
+    coefficients = fitted(products, products @ truth, np.ones(400))
+    error = terms(features.scaled(new), 3) @ (coefficients - truth)
+    assert np.abs(error).max() < 0.02 * np.abs(products @ truth).max()
 
 
 def test_terms_are_the_products_of_scaled_features():
@@ -77,27 +76,27 @@ def test_terms_are_the_products_of_scaled_features():
     one = np.ones(50)
     columns = (one, x, ratio, mass, gain)
     wanted = [columns[i] * columns[j] * columns[k] for i in range(5) for j in range(i, 5) for k in range(j, 5)]
-    got = features_of(SPACE).terms(values)
+    got = terms(features_of(SPACE).scaled(values), 3)
     assert np.allclose(np.sort(got, axis=1), np.sort(np.column_stack(wanted), axis=1), rtol=0.0, atol=1e-12)
 
 
 def test_weights_decide_which_points_the_fit_follows():
-    # Without features, the constant is the only term.
+    # The constant is the only term.
     targets = np.array([[0.0], [0.0], [1.0], [1.0]])
     weights = np.array([1.0, 1.0, 3.0, 3.0])
-    assert fitted(np.zeros((4, 0)), targets, weights)[0, 0] == pytest.approx(0.75, rel=1e-6)
+    assert fitted(np.ones((4, 1)), targets, weights)[0, 0] == pytest.approx(0.75, rel=1e-6)
 
 
-def test_the_fit_of_many_points_is_the_weighted_ridge_regression():
-    """More points than are in memory at once, against numpy's least squares with a row more for each held-back term."""
+def test_the_fit_is_the_weighted_ridge_regression():
+    """Against numpy's least squares with a row more for each held-back term."""
     generator = np.random.default_rng(14)
     points, targets, weights = generator.uniform(-1.0, 1.0, (700, 4)), generator.random((700, 3)), generator.random(700)
-    terms = cubic_terms(points)
+    products = terms(points, 3)
     held_back = np.sqrt(1e-4 * weights.sum()) * np.eye(35)
     held_back[0, 0] = np.sqrt(1e-9 * weights.sum())
-    rows = np.vstack((terms * np.sqrt(weights)[:, None], held_back))
+    rows = np.vstack((products * np.sqrt(weights)[:, None], held_back))
     wanted = np.linalg.lstsq(rows, np.vstack((targets * np.sqrt(weights)[:, None], np.zeros((35, 3)))), rcond=None)[0]
-    np.testing.assert_allclose(fitted(points, targets, weights), wanted, rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(fitted(products, targets, weights), wanted, rtol=0.0, atol=1e-11)
 
 
 def test_shortfall_is_the_least_shift_that_frees_a_point_from_a_front():
@@ -108,7 +107,7 @@ def test_shortfall_is_the_least_shift_that_frees_a_point_from_a_front():
         front = np.array([p for p in front if not any((q <= p).all() and (q < p).any() for q in front)])
         front = np.vstack((front, front[:1]))
         plain = [max(min(p[k] - f[k] for k in range(objectives)) for f in front) for p in points]
-        assert shortfall(points, along(front)) == pytest.approx(plain, rel=1e-14)
+        assert shortfall(points, front) == pytest.approx(plain, rel=1e-14)
 
 
 def test_the_standing_of_an_archive():
@@ -251,41 +250,6 @@ def test_a_long_front_leaves_points_behind_it_in_the_fit():
     assert _training(order[:1700]).tolist() == order[:1700].tolist()
 
 
-def test_swaps_try_every_other_gearbox_and_nothing_else():
-    designs = spread(SPACE, 3, np.random.default_rng(13))
-    found = swaps(SPACE, designs)
-    assert found.shape == (36, 3)
-    for design, rows in zip(designs, np.split(found, 3), strict=True):
-        assert rows[:, 1].tolist() == list(range(12))
-        assert (rows[:, [0, 2]] == design[[0, 2]]).all()
-    assert swaps(replace(SPACE, gears={}), designs).shape == (0, 3)
-
-
-def test_with_several_motors_swaps_try_every_gearbox_of_the_motor_and_every_motor():
-    motors = tuple(
-        MotorKind(name=name, peak_torque_n_m=torque, no_load_speed_rad_per_s=40.0, gears={"knee_ratio": GEARS[:count]})
-        for name, torque, count in (("A", 10.0, 4), ("B", 20.0, 6))
-    )
-    space = replace(
-        SPACE,
-        names=(*SPACE.names, "knee_motor"),
-        lower=np.array([0.3, 0.0, 5.0, 0.0]),
-        upper=np.array([0.5, 1.0, 200.0, 1.0]),
-        gears={},
-        choices=(MotorChoice(name="knee_motor", motors=motors),),
-    )
-    found = swaps(space, np.array([[0.4, 0.2, 50.0, 1.0]]))
-    assert found[:, 0].tolist() == [0.4] * 8
-    gears = sorted(
-        {
-            (int(space.motor_of("knee_ratio", row[None])[0]), int(space.gear_of("knee_ratio", row[None])[0]))
-            for row in found
-        }
-    )
-    # The second of six gearboxes has a share of 0.2; with the other motor, of four, that is the first.
-    assert gears == [(0, 0), *((1, k) for k in range(6))]
-
-
 def test_near_simulated_designs_the_prediction_is_many_times_as_good_as_the_cubic():
     archive = archive_of(600, limit=5.5)
     standing = archive.standing()
@@ -297,24 +261,6 @@ def test_near_simulated_designs_the_prediction_is_many_times_as_good_as_the_cubi
     assert fine < 0.3 * rough
     missed = (prediction.fine(near)[1] > 1e-3) == (scores.violation > 1e-3)
     assert missed.mean() > 0.95
-
-
-def test_two_threads_predict_what_one_does():
-    """To the last bit, whatever the number of designs, and whether the model's parts were asked for before or not."""
-    archive = archive_of(600, limit=5.5)
-    standing, features = archive.standing(), features_of(SPACE)
-    alone = Prediction(archive, standing, features)
-    values = spread(SPACE, 801, np.random.default_rng(17))
-    with ThreadPoolExecutor(1) as helper:
-        both = Prediction(archive, standing, features, helper)
-        both.look_around()
-        both.fit()
-        for count in (0, 1, 199, 200, 801):
-            some = values[:count]
-            for one, two in zip(
-                (*alone.rough(some), *alone.fine(some)), (*both.rough(some), *both.fine(some)), strict=True
-            ):
-                assert np.array_equal(one, two)
 
 
 def test_the_best_of_each_part_comes_first_then_the_second_best():
@@ -369,12 +315,15 @@ def test_a_tenth_of_each_generation_explores(monkeypatch):
     scaled, asked = features_of(SPACE).scaled(known), features_of(SPACE).scaled(proposed)
     away = np.array([np.sqrt(np.square(scaled - one).sum(axis=1)).min() for one in asked])
     assert len(asked) == 40
-    # The last eight are plain evolution.
-    assert away[-10:-8].min() > 5.0 * np.median(away[:-12])
-    assert {tuple(row) for row in proposed[-12:-10]} <= {tuple(row) for row in ended[-1]}
-    # Nothing can be exchanged in this space: six climbs begin anywhere, four on the front, and three close to it.
+    # Plain evolution is last; a tenth of the others explores, and half of these are where climbs ended.
+    plain = algorithm._plain
+    count = round(0.1 * (40 - plain))
+    assert away[-plain - (count - count // 2) : -plain].min() > 5.0 * np.median(away[: -plain - count])
+    by_climbs = proposed[-plain - count : -plain - (count - count // 2)]
+    assert {tuple(row) for row in by_climbs} <= {tuple(row) for row in ended[-1]}
+    # Six climbs begin anywhere, six on the front, and three close to it.
     simulated = [tuple(row) in {tuple(design) for design in known} for row in began[-1]]
-    assert len(simulated) == 13
+    assert len(simulated) == 15
     assert simulated[:6].count(False) >= 4
     assert all(simulated[6:])
 
@@ -438,8 +387,8 @@ def test_it_simulates_what_a_sweep_of_the_truth_would_choose(limit):
     truth = Archive(SPACE)
     truth.add(many, found)
     standing = truth.standing()
-    # A fifth, the last ones, is plain evolution.
-    asked = scored(algorithm.ask().values[:-4], limit=limit)
+    # The last ones are plain evolution.
+    asked = scored(algorithm.ask().values[: -algorithm._plain], limit=limit)
     costs = np.column_stack((-np.log(asked.values[:, 0]), np.log(asked.values[:, 1])))
     behind = shortfall(standing.scaled(costs), standing.line)
     assert (asked.violation == 0.0).mean() > 0.9
@@ -449,17 +398,20 @@ def test_it_simulates_what_a_sweep_of_the_truth_would_choose(limit):
 def test_without_a_feasible_design_it_looks_for_the_least_violation():
     """None of the designs that begin the search has a link within a fiftieth of a millimetre of 317.3 mm."""
     algorithm, violations = SurrogateSearch(SPACE, SETTINGS, 1), []
-    for _ in range(8):
+    for _ in range(16):
         values = algorithm.ask().values
         scores = scored(values)
         missed = np.abs(values[:, 0] - 0.3173) / 0.2 - 1e-4
         violation = np.maximum(missed, 0.0)
         violations.append(violation)
         algorithm.tell(replace(scores, violation=violation, constraints=missed[:, None]))
-    drawn = np.concatenate(violations[:3])
+    drawn = violations[0]
     assert (drawn > 0.0).all()
-    assert np.median(violations[3]) < 0.2 * np.median(drawn)
-    assert np.median(violations[-1]) < 0.05 * np.median(drawn)
+    # Until one is found, a generation is a quarter of the population, and the model learns from each.
+    assert len(drawn) == 20
+    assert len(violations[3]) == 5
+    assert min(one.min() for one in violations) < 0.05 * drawn.min()
+    assert np.median(np.concatenate(violations[-4:])) < 0.02 * np.median(drawn)
 
 
 @pytest.fixture

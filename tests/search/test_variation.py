@@ -1,12 +1,10 @@
-"""Scans and exchanges of the surrogate-assisted search, against designs written out by hand."""
-
-from dataclasses import replace
+"""Scans of the surrogate-assisted search, against designs written out by hand."""
 
 import numpy as np
 import pytest
 
 from pareto_monoped.search.algorithm import Gear, MotorChoice, MotorKind, Space
-from pareto_monoped.search.variation import exchanges, scans, spread
+from pareto_monoped.search.variation import scans, spread
 
 
 def gears(*ratios):
@@ -70,31 +68,3 @@ def test_a_scan_tries_gearboxes_of_the_motor_and_other_motors():
     # None more often than others: a list has no bounds.
     assert (rows[last, 0, :, 0] == 0.0).mean() < 0.3
     assert (rows[:, 0, :, 1:] == designs[:, None, 1:]).all()
-
-
-def test_exchanged_links_and_gearboxes_keep_to_their_bounds():
-    found = exchanges(SPACE, np.array([[0.48, 0.32, 3.0, 0.0, 5.0]]))
-    # 0.48 m is too long for this shank; the gearbox nearest 7.0:1 is 5.5:1, the one nearest 4.4:1 is 4:1.
-    assert found.tolist() == [
-        [0.32, 0.45, 3.0, 0.0, 5.0],
-        [0.48, 0.32, 0.0, 1.0, 5.0],
-        [0.32, 0.45, 0.0, 1.0, 5.0],
-    ]
-
-
-def test_where_one_of_a_pair_is_fixed_there_is_nothing_to_exchange():
-    only = replace(SPACE, names=SPACE.names[1:3], lower=SPACE.lower[1:3], upper=SPACE.upper[1:3])
-    assert exchanges(only, np.array([[0.32, 3.0]])).shape == (0, 2)
-
-
-def test_ratios_without_a_list_are_exchanged_as_they_are():
-    plain = replace(
-        SPACE, gears={}, lower=np.array([0.3, 0.3, 4.0, 4.0, 0.1]), upper=np.array([0.5, 0.5, 8.7, 7.0, 9.7])
-    )
-    found = exchanges(plain, np.array([[0.4, 0.4, 8.1, 4.2, 5.0]]))
-    assert found[1].tolist() == [0.4, 0.4, 4.2, 7.0, 5.0]
-
-
-def test_with_several_motors_joints_exchange_their_shares_of_the_lists():
-    found = exchanges(BY_MOTOR, np.array([[0.25, 1.0, 1.0], [0.5, 0.0, 0.0]]))
-    assert found.tolist() == [[1.0, 0.25, 1.0], [0.0, 0.5, 0.0]]
