@@ -260,6 +260,7 @@ def main() -> None:
     parser.add_argument("--only", nargs="+", choices=CONTENDERS, help="run only these contenders")
     parser.add_argument("--wall", action="store_true", help="only time those that have been run, one after the other")
     parser.add_argument("--evaluations", type=int, help="jumps per search, instead of 1,000 or 8,000")
+    parser.add_argument("--seeds", nargs=2, type=int, metavar=("FIRST", "LAST"), help="instead of 1 to 2 or 1 to 5")
     parser.add_argument("--reference", type=int, help="jumps for a reference front that no file has")
     parser.add_argument("--motor", default="VT8020")
     parser.add_argument("--calibration", default="reference")
@@ -267,6 +268,8 @@ def main() -> None:
     arguments = parser.parse_args()
     evaluations, seeds, effort = (8_000, [1, 2, 3, 4, 5], 200_000) if arguments.full else (1_000, [1, 2], 10_000)
     evaluations, effort = arguments.evaluations or evaluations, arguments.reference or effort
+    if arguments.seeds:
+        seeds = list(range(arguments.seeds[0], arguments.seeds[1] + 1))
     problem: dict[str, Any] = {
         "motor": arguments.motor,
         "calibration": arguments.calibration,
@@ -308,7 +311,7 @@ def main() -> None:
         f"Reference front: {len(best)} designs of {results['reference']['evaluations']:,} evaluations and of all "
         f"contenders, hypervolume {hypervolume(best, corner):.4f} {first.objectives.volume_unit} "
         f"from {corner.text()}.\n"
-        f"Shares of it, epsilon and IGD+ in percent: median (least to greatest) of {len(seeds)} seeds.\n"
+        f"Shares of it, epsilon and IGD+ in percent: median (least to greatest) of seeds {seeds[0]} to {seeds[-1]}.\n"
     )
     print(table(results, best, corner))
     if first.objectives.names[0] == "height_m" and len(first.objectives.names) == 2:
