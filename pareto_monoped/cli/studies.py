@@ -124,6 +124,7 @@ def resume(
 def status(db: StudyPlace, as_json: bool) -> None:
     """Show a study's progress, hypervolume, speed and settings."""
     from pareto_monoped.definition.study import NO_STRENGTH
+    from pareto_monoped.pareto.growth import AHEAD
     from pareto_monoped.storage.kept_front import foreign_note
     from pareto_monoped.storage.seals import UNSEALED
     from pareto_monoped.storage.status import status as study_status
@@ -132,7 +133,7 @@ def status(db: StudyPlace, as_json: bool) -> None:
     if as_json:
         echo(json.dumps(facts, indent=2))
         return
-    rate = facts["evaluations_per_second"]
+    rate, left = facts["evaluations_per_second"], facts["left_to_gain"]
     lines = {
         "study": name(facts["name"]),
         "state": _state(facts),
@@ -149,6 +150,7 @@ def status(db: StudyPlace, as_json: bool) -> None:
         **({"foreign": foreign_note(facts["foreign"])} if facts["foreign"] else {}),
         "objectives": ", ".join(facts["objectives"]),
         "hypervolume": f"{facts['hypervolume']:.4f} {facts['hypervolume_unit']} from ({_corner(facts)})",
+        **({} if left is None else {"left to gain": f"{left:.1%} with {AHEAD} times as many evaluations (estimated)"}),
         **_at_height(facts),
         "time": f"{facts['wall_time_s']:.1f} s" + (f", {rate:.0f} designs/s" if rate else ""),
         "settings hash": facts["hash"][:16],

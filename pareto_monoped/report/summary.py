@@ -9,6 +9,7 @@ from pareto_monoped.analysis.remarks import warnings
 from pareto_monoped.definition.study import NO_STRENGTH
 from pareto_monoped.design import HEADLINE_HEIGHT_M, PAPER_CASES
 from pareto_monoped.pareto.front import best_at_height
+from pareto_monoped.pareto.growth import AHEAD, left_to_gain
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 from pareto_monoped.report.schema import Case
 from pareto_monoped.storage.reader import StudyData
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from pareto_monoped.jump.calibration import Calibration
     from pareto_monoped.report.resimulation import Resimulation
 
+_WORTH_TELLING = 0.001  # our own choice: a front that grows by less looks the same
 _DRIFT_M = 0.001  # our own choice: the last digit in which the page shows a height
 _ABOVE = ("name", "description", "seed", "motor", "hip_motor", "knee_motor", "calibration")
 """Settings that stand in the first rows of the table or elsewhere on the page."""
@@ -129,6 +131,11 @@ def notes(data: StudyData, again: "Resimulation") -> list[str]:
         lines.append(
             f"Unfinished: {done} of {budget} designs are simulated. The front will still move, and it is audited only "
             "at the end."
+        )
+    left = left_to_gain(*data.history[["evaluations", "hypervolume"]].to_numpy().T)
+    if left is not None and left > _WORTH_TELLING:
+        lines.append(
+            f"{AHEAD} times as many designs would gain about {left:.1%} of the hypervolume, by how the front has grown."
         )
     bad = len(data.ill_conditioned)
     if bad:

@@ -1,5 +1,6 @@
 """Progress, settings, counts, front and hypervolume of a study, read without its other trials, and checked."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import itemgetter
 from typing import Any
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from pareto_monoped.definition.study import Study, study_from_dict
 from pareto_monoped.design import HEADLINE_HEIGHT_M
 from pareto_monoped.pareto.front import best_at_height
+from pareto_monoped.pareto.growth import left_to_gain
 from pareto_monoped.pareto.objectives import hypervolume
 from pareto_monoped.storage.base import undamaged
 from pareto_monoped.storage.connection import Connection
@@ -27,6 +29,7 @@ class Summary:
     meta: StudyMeta
     counts: dict[str, int]  #: number of trials that are feasible, infeasible and failed
     seconds: float  #: running time so far, over all sessions
+    left_to_gain: float | None  #: see ``pareto.growth.left_to_gain``
     ill_conditioned: int  #: number of trials that failed their audit
     #: values of the objectives of the designs on the front, shape (n, m), by the first of them
     front: NDArray[np.float64]
@@ -49,7 +52,8 @@ def read_summary(db: StudyPlace) -> Summary:
         checked = checked_front(connection, db)
         last = connection.execute(f"{ROWS['history']} DESC LIMIT 1").fetchall()
         audits = connection.execute(ROWS["audits"]).fetchall()
-        findings = checked.seals.row_findings("history", last, whole=False)
+        middle = _around_half(connection, last[0][1]) if last else []
+        findings = checked.seals.row_findings("history", [*middle, *last], whole=False)
         if [row[0] for row in last] != sorted(map(int, checked.seals.written.get("history", {})))[-1:]:
             findings.append("the last rows of its history are missing")
         if findings := [*findings, *checked.seals.row_findings("audits", audits)]:
@@ -66,6 +70,7 @@ def read_summary(db: StudyPlace) -> Summary:
             meta=checked.meta,
             counts=kept.counts,
             seconds=float(last[0][3]) if last else 0.0,
+            left_to_gain=_left([*middle, *last]),
             ill_conditioned=sum(1 for row in audits if not row[1]),
             foreign=foreign_count(connection, checked.seals.trials),
             content_hash=content_hash(checked.meta, checked.seals.parts),
@@ -77,6 +82,19 @@ def _summary(values: NDArray[np.float64], **known: Any) -> Summary:
     """Return a summary; ``values`` has the objectives, height and energy of each design on the front."""
     values = values[np.argsort(values[:, 0], kind="stable")]
     return Summary(front=values[:, :-2], heights_m=values[:, -2], energies_j=values[:, -1], **known)
+
+
+def _around_half(connection: Connection, evaluations: int) -> list[Any]:
+    """Return the rows of the history on either side of half of the evaluations, which may be one; none before them."""
+    before, after = ROWS["history"].split(" ORDER BY ")[0], int(evaluations) // 2
+    low = connection.execute(f"{before} WHERE evaluations <= {after} ORDER BY generation DESC LIMIT 1").fetchall()
+    high = connection.execute(f"{before} WHERE evaluations > {after} ORDER BY generation LIMIT 1").fetchall()
+    return [*low, *high] if low else []
+
+
+def _left(history: Sequence[Sequence[float]]) -> float | None:
+    """Return what is left to gain by rows of the history."""
+    return left_to_gain([row[1] for row in history], [row[2] for row in history])
 
 
 def _computed(connection: Connection, db: StudyPlace) -> Summary:
@@ -92,6 +110,7 @@ def _computed(connection: Connection, db: StudyPlace) -> Summary:
         meta=data.meta,
         counts={state: states.count(state) for state in STATES},
         seconds=data.wall_time_s,
+        left_to_gain=_left(data.history.to_numpy().tolist()),
         ill_conditioned=len(data.ill_conditioned),
         foreign=foreign_count(connection, len(data.trials)),
         content_hash=data.content_hash,
@@ -127,6 +146,7 @@ def status(db: StudyPlace) -> dict[str, Any]:
         "foreign": data.foreign,
         "hypervolume": hypervolume(data.front, data.study.reference_point),
         "hypervolume_unit": objectives.volume_unit,
+        "left_to_gain": data.left_to_gain,
         "objectives": objectives.directions,
         "reference_point": data.study.reference_point.as_dict(),
         "least_energy_at_0_8_m_j": float(high.min()) if len(high) else None,

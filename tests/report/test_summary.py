@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from pareto_monoped.pareto.growth import left_to_gain
 from pareto_monoped.report.summary import notes, sentences
 from tests.report.conftest import cut
 
@@ -48,10 +49,16 @@ def test_a_low_front_says_how_high_it_gets(data, resimulation):
     )
 
 
+def growth(data):
+    return data.history["evaluations"], data.history["hypervolume"]
+
+
 def test_notes_tell_of_drift_bad_audits_and_an_early_end(data, resimulation):
     *others, last = notes(data, resimulation)
     assert last.startswith("Strength was not asked for")
-    assert all("audit" in n for n in others)
+    gain = f"4 times as many designs would gain about {left_to_gain(*growth(data)):.1%} of the hypervolume"
+    assert all("audit" in n or n.startswith(gain) for n in others)
+    assert sum(n.startswith(gain) for n in others) == 1
     less = cut(data, np.arange(len(data.trials)) < 50)
     audits = data.audits.iloc[:2].copy()
     audits["well_conditioned"] = False

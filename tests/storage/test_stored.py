@@ -13,13 +13,15 @@ from pareto_monoped.definition import provenance
 from pareto_monoped.definition.study import load_study
 from pareto_monoped.design import DEFAULTS
 from pareto_monoped.errors import StudyError
+from pareto_monoped.pareto.growth import left_to_gain
 from pareto_monoped.pareto.pick import pick
 from pareto_monoped.pareto.selectors import Knee, MaxEnergy, MinHeight
 from pareto_monoped.storage.columns import LATER
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.status import status
-from pareto_monoped.study.run import resume
+from pareto_monoped.study.run import resume, run
 from pareto_monoped.study.simulator import continued_simulator, stored_simulator
+from tests.study.support import made_study
 
 DATA = Path(__file__).parent / "data"
 NAMES = ("plain", "own_files")
@@ -37,7 +39,7 @@ def test_status_reads_the_same(name):
     del facts["database"]
     wanted = expected(name)["status"]
     del facts["content_hash"]  # which has a test of its own
-    added = ("hypervolume_unit", "objectives", "best_at_0_8_m", "strength", "foreign", "sealed")
+    added = ("hypervolume_unit", "objectives", "best_at_0_8_m", "strength", "foreign", "sealed", "left_to_gain")
     later = {key: facts.pop(key) for key in added}
     assert json.loads(json.dumps(facts)) == wanted
     assert later == {
@@ -47,7 +49,22 @@ def test_status_reads_the_same(name):
         "strength": False,
         "foreign": 0,
         "sealed": False,
+        "left_to_gain": later["left_to_gain"],  # whose test is below
     }
+
+
+def test_what_is_left_to_gain_needs_no_more_than_the_history_around_its_middle(tmp_path):
+    """Of two algorithms and at each length: what all of the history says, read row by row."""
+    for algorithm, population in (("random", 7), ("nsga2", 10)):
+        study = made_study(evaluations=10, audit=False, algorithm={"name": algorithm, "population": population})
+        db = tmp_path / f"{algorithm}.db"
+        run(study, db)
+        for evaluations in (20, 33, 60):
+            resume(db, evaluations=evaluations)
+            history = read_study(db).history
+            whole = left_to_gain(history["evaluations"], history["hypervolume"])
+            assert status(db)["left_to_gain"] == whole
+        assert whole > 0.0
 
 
 @named
