@@ -201,6 +201,18 @@ def test_stops_on_a_plateau(tmp_path):
     assert 10 < summary.evaluations < 60
 
 
+def test_a_search_that_has_no_feasible_design_is_on_no_plateau(tmp_path):
+    """Its front does not grow, and still it has not arrived anywhere."""
+    study = made(
+        algorithm={"name": "random", "population": 5},
+        evaluations=30,
+        stop={"plateau_evaluations": 10, "plateau_growth": 0.5},
+        constraints={"mass_kg": {"max": 0.1}},
+    )
+    summary = run(study, tmp_path / "s.db")
+    assert (summary.stop_reason, summary.evaluations, summary.front_size) == ("budget", 30, 0)
+
+
 def test_stops_on_wall_time_over_all_sessions(tmp_path):
     study = made(evaluations=10_000, stop={"wall_time_s": 0.05})
     first = run(study, tmp_path / "s.db")
