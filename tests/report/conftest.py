@@ -264,3 +264,33 @@ def open_tab(browser, spare):
     spare.extend(used)
     for tab in closed:
         tab.context.close()
+
+
+def front_below(card, height_m, mass_kg):
+    """Rows of the front of the designs that are as high and as light, the lowest first, and of all; by brute force."""
+    columns = card.trials.columns
+    able = [row for row, letter in enumerate(card.trials.state) if letter == "f" and row not in card.ill_conditioned]
+    able = [r for r in able if columns["height_m"][r] >= height_m and columns["mass_kg"][r] <= mass_kg]
+
+    def cost(row):
+        return -columns["height_m"][row], columns["energy_j"][row]
+
+    def beats(one, other):
+        """The first of two equal designs stays."""
+        (low, less), (high, more) = cost(one), cost(other)
+        return low <= high and less <= more and (cost(one) != cost(other) or one < other)
+
+    kept = [row for row in able if not any(beats(other, row) for other in able)]
+    assert len(kept) < len(able)
+    return sorted(kept, key=lambda row: columns["height_m"][row]), able
+
+
+def telling_mass_kg(card, height_m=0.0):
+    """A greatest mass that brings designs to the front which a lighter or heavier one would not: about the median."""
+    columns = card.trials.columns
+    masses = sorted(columns["mass_kg"][row] for row in card.front if columns["height_m"][row] >= height_m)
+    for mass in masses[len(masses) // 2 :: -1]:
+        kept, _ = front_below(card, height_m, round(mass, 3))
+        if len(kept) > 1 and set(kept) - set(card.front):
+            return round(mass, 3)
+    raise AssertionError("no condition on the mass brings a design to the front")

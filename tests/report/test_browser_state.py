@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.report.page import build, page
+from tests.report.conftest import front_below, telling_mass_kg
 
 pytestmark = pytest.mark.browser
 
@@ -28,17 +29,8 @@ def limits(card):
     """A height and a mass, the designs that meet them, and the front of these, by brute force."""
     columns = card.trials.columns
     height = float(np.quantile([columns["height_m"][row] for row in card.front], 0.3))
-    masses = [columns["mass_kg"][row] for row in card.front if columns["height_m"][row] >= height]
-    mass = float(np.median(masses))
-    able = [row for row, letter in enumerate(card.trials.state) if letter == "f" and row not in card.ill_conditioned]
-    able = [r for r in able if columns["height_m"][r] >= height and columns["mass_kg"][r] <= mass]
-
-    def cost(row):
-        return -columns["height_m"][row], columns["energy_j"][row]
-
-    kept = [r for r in able if not any(s != r and cost(s)[0] <= cost(r)[0] and cost(s)[1] <= cost(r)[1] for s in able)]
-    kept.sort(key=lambda row: columns["height_m"][row])
-    assert 1 < len(kept) < len(able)
+    mass = telling_mass_kg(card, height)
+    kept, able = front_below(card, height, mass)
     assert set(kept) - set(card.front), "the conditions bring something to the front"
     return SimpleNamespace(height=height, mass=mass, kept=kept, able=able)
 
