@@ -250,6 +250,7 @@ class TestAhead:
         with _Ahead(["run", "none.toml"]) as ahead, pytest.raises(StudyError, match=r"none\.toml"):
             ahead.code()
 
+    @pytest.mark.long
     def test_a_study_cut_short_goes_on_where_it_stopped(self, tmp_path):
         """By the same trials as those of a study that nobody stopped."""
         run = ["run", str(ROOT / "studies" / "quick.toml"), "--evaluations", "400", "--workers", "1", "--db"]
