@@ -303,7 +303,7 @@ def study_from_dict(values: Mapping[str, Any], *, source: str) -> Study:
     if file.copies > 1 and (
         file.uncertainty is not None or any(map(is_robust, (*objectives.names, *file.constraints)))
     ):
-        raise StudyError(f"{source}: copies = {file.copies}: must be 1 under uncertainty, which has samples; drop it")
+        raise StudyError(f"{source}: copies = {file.copies}: must be 1 under uncertainty, which has samples; give 1")
     constraints = constraints_of(file.constraints, strength=file.strength, robust=robust, source=source)
     table = {} if file.uncertainty is None and any(map(is_robust, constraints.measures)) else file.uncertainty
     plain: dict[str, Any] = {name: getattr(file, name) for name in _AS_IN_FILE}
