@@ -81,7 +81,6 @@ def climbs(
     return Climbs(values=values, costs=costs, violation=violation, ends=ends)
 
 
-"""Changes from a known design to a new one. Our own choice."""
 _MOTOR_ENDS_STEPS = 60
 """Small steps that are looked at for each change. Our own choice: with 16, a motor with few designs is not learned."""
 
@@ -176,10 +175,10 @@ learns from every generation."""
 _FEW = 50
 """Generations of the population's own size. Our own choice: 2,000 designs with the default population."""
 _LARGER = 2
-"""How many times as many designs each later generation has, as many climbs and as many with other gearboxes. Our own
-choice: the model takes as long for twice as many designs, and the front is as good. Four times as many, with no more
-climbs, take a tenth less time for 8,000 designs of Case C, but one of 15 seeds then needs 1.2 percent more energy than
-the best known at 1.1 m, where all 15 are within 0.3 percent with twice as many."""
+"""How many times as many designs each later generation has, and as many climbs. Our own choice: the model takes as long
+for twice as many designs, and the front is as good. Four times as many, with no more climbs, take a tenth less time for
+8,000 designs of Case C, but one of 15 seeds then needs 1.2 percent more energy than the best known at 1.1 m, where all
+15 are within 0.3 percent with twice as many."""
 
 
 def _unranked(values: Floats, missing: NDArray[np.bool_], count: int, generator: np.random.Generator) -> Floats:
