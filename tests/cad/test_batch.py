@@ -43,13 +43,15 @@ def made(monkeypatch, folder, names, count=1, function=touch):
     return found, str(caught.value)
 
 
+@pytest.mark.long
 def test_the_first_failure_is_raised_and_what_follows_is_not_begun(tmp_path, monkeypatch):
     assert made(monkeypatch, tmp_path, ["a", "bad", "c", "d"]) == (["a"], "bad task")
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
 
 
-def test_what_is_in_progress_at_a_failure_ends(tmp_path, monkeypatch):
-    assert made(monkeypatch, tmp_path, ["slow", "bad"], 2, slow) == (["slow"], "bad task")
+def test_what_is_in_progress_at_a_failure_ends_and_what_follows_is_not_begun(tmp_path, monkeypatch):
+    assert made(monkeypatch, tmp_path, ["slow", "bad", "c"], 2, slow) == (["slow"], "bad task")
+    assert [path.name for path in tmp_path.iterdir()] == ["slow"]
 
 
 def test_a_process_that_dies_is_a_failure(tmp_path, monkeypatch):

@@ -23,7 +23,7 @@ def trace():
 
 @pytest.fixture(scope="module")
 def pictures(trace):
-    return list(film(pm.build_robot(C), trace, slower=2.0))
+    return list(film(pm.build_robot(C), trace, slower=1.0))
 
 
 def dark_rows(picture):

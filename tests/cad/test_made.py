@@ -60,6 +60,7 @@ def test_an_export_of_another_design_is_stale(original, name):
     assert not is_made(dataclasses.replace(original, design=other))
 
 
+@pytest.mark.long
 def test_an_export_with_another_motor_is_stale(original):
     heavier = dataclasses.replace(
         original.motor, framed=dataclasses.replace(original.motor.framed, mass_kg=original.motor.framed.mass_kg + 1e-3)

@@ -53,7 +53,7 @@ def without(robot, unit_name, part_name):
 
 @pytest.mark.parametrize(
     ("unit", "part"),
-    [("thigh", "none"), ("thigh", "turnbuckle_end_hip")],
+    [pytest.param("thigh", "none", marks=pytest.mark.long), ("thigh", "turnbuckle_end_hip")],
 )
 def test_what_is_loose_does_not_depend_on_names(product, renamed, names, unit, part):
     here = loose_parts(without(product.robot, unit, part))

@@ -12,7 +12,7 @@ from pareto_monoped.cad import batch, jobs
 from pareto_monoped.cad.records import is_made
 from pareto_monoped.errors import CheckError, OutputError
 
-FORMATS = ["dxf", "mjcf"]
+FORMATS = ["dxf", "3mf"]
 
 
 def contents(folder):

@@ -18,7 +18,7 @@ def test_a_population_has_the_factors_of_its_designs(rules):
     actuator_map, designs, result, loads = jumped(rules)
     factors = strength_factors(designs, actuator_map, loads)
     assert factors.shape == (len(designs), len(TABLE))
-    for i, design in enumerate(designs[:8]):
+    for i, design in enumerate(designs[:4]):
         alone = factors_one_by_one(actuator_map, design, loads, i)
         assert list(alone) == [joint.name for joint in TABLE]
         assert factors[i] == pytest.approx(list(alone.values()), rel=1e-10, nan_ok=rules == "paper")

@@ -88,7 +88,7 @@ def test_thigh_plates_by_hand(length_m, which, side):
     assert float(row.factor(*capacity, 150.0, stop, chain, knee, length_m)) < 0.8 * found
 
 
-@pytest.mark.parametrize("length_m", [0.3, 0.42, 0.5])
+@pytest.mark.parametrize("length_m", [0.42, *(pytest.param(one, marks=pytest.mark.long) for one in (0.3, 0.5))])
 def test_shank_plates_are_nowhere_stressed_more_than_said(length_m):
     plate = next(part for part in shank_parts(length_m, D) if part.role is Role.PLATE)
     gear, knee = 60.0, 200.0

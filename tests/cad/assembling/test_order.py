@@ -200,11 +200,8 @@ def test_every_part_of_a_robot_is_put_in_its_place_once(planned):
 @pytest.mark.parametrize(
     ("case", "motor"),
     [
-        ("C", "U12"),
-        *(
-            pytest.param(*pair, marks=pytest.mark.long)
-            for pair in (("nominal", "MAD_M6C12"), ("C", "VT8020"), ("C", "MN8014"), ("nominal", "U8"))
-        ),
+        pytest.param(*pair, marks=pytest.mark.long)
+        for pair in (("C", "U12"), ("nominal", "MAD_M6C12"), ("C", "VT8020"), ("C", "MN8014"), ("nominal", "U8"))
     ],
 )
 def test_other_robots_come_together_too(case, motor):

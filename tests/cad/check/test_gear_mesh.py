@@ -28,26 +28,34 @@ def with_gears(product, joint, change):
     return replace(product, robot=replace(product.robot, **{joint: replace(actuator, parts=parts)}))
 
 
-@pytest.mark.parametrize("joint", ["hip", "knee"])
+FAULTS = {
+    "thicker teeth": lambda gear: replace(gear, backlash_mm=gear.backlash_mm - 0.03),
+    "a ring that is turned": lambda gear: replace(gear, phase_rad=gear.phase_rad + 0.01),
+    "a ring of another angle": lambda gear: replace(gear, pressure_angle_rad=np.radians(20.5)),
+}
+EVERY_TIME = (("hip", "thicker teeth"), ("hip", "a ring of another angle"), ("knee", "a ring that is turned"))
+
+
 @pytest.mark.parametrize(
-    ("what", "change"),
+    ("joint", "what"),
     [
-        ("thicker teeth", lambda gear: replace(gear, backlash_mm=gear.backlash_mm - 0.03)),
-        ("a ring that is turned", lambda gear: replace(gear, phase_rad=gear.phase_rad + 0.01)),
-        ("a ring of another angle", lambda gear: replace(gear, pressure_angle_rad=np.radians(20.5))),
+        pytest.param(joint, what, marks=() if (joint, what) in EVERY_TIME else pytest.mark.long)
+        for joint in ("hip", "knee")
+        for what in FAULTS
     ],
-    ids=lambda value: value if isinstance(value, str) else "",
 )
-def test_teeth_that_do_not_fit_are_found(product, joint, what, change):
-    rings = what.startswith("a ring")
+def test_teeth_that_do_not_fit_are_found(product, examine, joint, what):
+    rings, change = what.startswith("a ring"), FAULTS[what]
     gears = getattr(product.robot, joint).gears
     check = gear_mesh.check(
         with_gears(product, joint, lambda gear: change(gear) if not rings or gear.teeth == gears.ring_teeth else gear)
     )
     assert check.measured > GEAR_MESH.value
     assert all(text.startswith(f"{joint}_actuator/") for text in check.failures)
+    assert check.name in examine()
 
 
+@pytest.mark.long
 def test_the_check_is_named_among_all(product, failing):
     broken = with_gears(product, "hip", lambda gear: replace(gear, backlash_mm=0.0, shift=gear.shift + 0.05))
     assert "gears mesh on their driving flanks" in failing(product=broken)

@@ -232,7 +232,7 @@ def test_a_chamfer_is_no_centre():
     assert float(Mouth.of_centre(1.5, 0.5).depth_mm) == pytest.approx(np.tan(np.radians(60.0)))
 
 
-def test_an_export_says_which_part_breaks_a_rule(product, failing, examine):
+def test_an_export_says_which_part_breaks_a_rule(product, examine):
     def deeper(hole):
         return replace(hole, thread_mm=4.0 + hole.thread_mm) if isinstance(hole, Hole) and hole.thread_mm else hole
 
@@ -243,9 +243,11 @@ def test_an_export_says_which_part_breaks_a_rule(product, failing, examine):
         for one in product.unique
     )
     assert unique != product.unique
-    broken = replace(product, unique=unique)
-    assert failing(product=broken) == ["taps run out over whole floors"]
-    assert "carrier" in examine(product=broken)["taps run out over whole floors"].failures[0]
+    checks = making.check(unique)
+    (failed,) = (check for check in checks if not check.passed)
+    assert failed.name == "taps run out over whole floors"
+    assert "carrier" in failed.failures[0]
+    assert {check.name for check in checks} <= set(examine())
 
 
 def winners(name, rules, most):
@@ -266,8 +268,8 @@ def check_winners(name, rules, most):
     assert seen == {family for entry in map_of(load_motor(name), rules).entries for family in entry.families}
 
 
-@pytest.mark.parametrize("name", MOTORS)
-def test_winners_of_every_motor_can_be_made(name):
+@pytest.mark.parametrize("name", ["U8", "U12"])
+def test_winners_can_be_made(name):
     check_winners(name, "iso6336", 4)
 
 

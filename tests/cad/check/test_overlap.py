@@ -35,8 +35,8 @@ def test_a_part_pushed_into_another_is_named(product, examine, failing):
     assert OVERLAP.value < check.measured < 0.2
 
 
-def test_an_overlap_as_deep_as_facets_passes(product, examine):
-    check = examine(product=raised(product, 0.012))["no two parts overlap"]
+def test_an_overlap_as_deep_as_facets_passes(product):
+    check = overlap.check(raised(product, 0.012))
     assert 0.001 < check.measured < OVERLAP.value
     assert check.passed
 

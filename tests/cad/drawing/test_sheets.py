@@ -27,7 +27,7 @@ from tests.cad.drawing.crossings import crossed
 
 ROBOTS = [
     ("A", "VT8020", "iso6336"),
-    ("B", "U12", "iso6336"),
+    pytest.param(("B", "U12", "iso6336"), marks=pytest.mark.long),
     pytest.param(("C", "VT8020", "paper"), marks=pytest.mark.long),
     pytest.param(("A", "U8", "iso6336"), marks=pytest.mark.long),
 ]

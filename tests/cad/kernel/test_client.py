@@ -87,18 +87,6 @@ def test_a_kernel_that_dies_is_replaced():
     assert program() is not first
 
 
-def test_a_kernel_that_owes_an_answer_is_given_up_without_waiting():
-    kernel.start()
-    first = program()
-    first.send_signal(signal.SIGSTOP)
-    owed = kernel.solid_facts([PLATE])
-    kernel.give_up()
-    assert first.returncode == -signal.SIGKILL
-    with pytest.raises(RuntimeError, match="process ended"):
-        owed.result()
-    assert kernel.solid_facts([PLATE]).result()[0].valid
-
-
 def test_what_a_busy_kernel_has_not_begun_is_done_here_from_the_last():
     assert kernel.solid_facts([PLATE]).result()[0].valid
     process = program()
@@ -126,15 +114,22 @@ def test_what_a_busy_kernel_has_not_begun_is_done_here_from_the_last():
     assert begun.result() == process.pid
 
 
-def test_nobody_is_started_to_help():
-    kernel.solid_facts([PLATE])
-    kernel.give_up()
-    kernel.help_out()
-    assert kernel._kernel is None
-
-
 def test_an_idle_kernel_is_kept():
     assert kernel.solid_facts([PLATE]).result()[0].valid
     before = kernel._process()
     kernel.give_up()
     assert kernel._process() is before
+
+
+def test_a_kernel_that_owes_an_answer_is_given_up_without_waiting_and_nobody_is_started_to_help():
+    kernel.start()
+    first = program()
+    first.send_signal(signal.SIGSTOP)
+    owed = kernel.solid_facts([PLATE])
+    kernel.give_up()
+    assert first.returncode == -signal.SIGKILL
+    with pytest.raises(RuntimeError, match="process ended"):
+        owed.result()
+    kernel.help_out()
+    assert kernel._kernel is None
+    assert kernel.solid_facts([PLATE]).result()[0].valid

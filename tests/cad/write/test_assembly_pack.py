@@ -8,56 +8,76 @@ import numpy as np
 import pytest
 import trimesh
 
+from pareto_monoped.cad.assembly import Pose, instances
+from pareto_monoped.cad.product import ListedPart, part_file_name
 from pareto_monoped.cad.shape.meshes import flaws
 from pareto_monoped.cad.write import meshes
-from pareto_monoped.cad.write.assembly_pack import COLLAR_MM, assembly_pack, foot_mould
+from pareto_monoped.cad.write.assembly_pack import COLLAR_MM, foot_mould
+from pareto_monoped.design import Design
 from pareto_monoped.geometry.roles import FASTENERS, Role
+from pareto_monoped.robot.build import build_robot
 
 
 @pytest.fixture(scope="module")
-def pack(product):
-    return assembly_pack(product.listed)
+def pack(exported):
+    """The files of an export's pack, by path."""
+    return {f"assembly/{path.name}": path.read_bytes() for path in (exported.folder / "assembly").iterdir()}
+
+
+@pytest.fixture(scope="module")
+def listed(exported, actuator_map):
+    """The parts of the same robot: each once, with how many there are."""
+    placed = {}
+    robot = build_robot(Design(**exported.record["as_built"]), actuator_map)
+    for instance in instances(robot, Pose(hip_rad=0.0, knee_rad=1.0)):
+        placed.setdefault(id(instance.part), []).append(instance)
+    found = []
+    for members in placed.values():
+        units, part = tuple(dict.fromkeys(one.unit for one in members)), members[0].part
+        found.append(ListedPart(name=part_file_name(units, part.name), part=part, count=len(members), units=units))
+    return found
 
 
 def rows_of(pack):
     return list(csv.DictReader(io.StringIO(pack["assembly/hardware.csv"].decode())))
 
 
-def test_the_page_shows_every_picture_and_names_every_part(pack, product):
+def test_the_page_shows_every_picture_and_names_every_part(pack, listed):
     page = pack["assembly/index.html"].decode()
     shown = re.findall(r"src='(step_\d+\.png)'", page)
     assert sorted(f"assembly/{name}" for name in shown) == sorted(name for name in pack if name.endswith(".png"))
     assert len(shown) > 20
     steps = page[: page.index("<h2>Screws</h2>")]
-    assert [u.part.name for u in product.unique if u.part.name.replace("_", " ") not in steps] == []
+    assert len(listed) > 80
+    assert [u.part.name for u in listed if u.part.name.replace("_", " ") not in steps] == []
 
 
-def test_every_screw_has_a_torque_and_a_lock(pack, product):
+def test_every_screw_has_a_torque_and_a_lock(pack, listed):
     page = pack["assembly/index.html"].decode()
     table = page[page.index("<h2>Screws</h2>") : page.index("<h2>Chain</h2>")]
     rows = [re.findall(r"<td>(.*?)</td>", row) for row in table.split("<tr>")[2:]]
-    assert len(rows) == sum(unique.part.role in FASTENERS for unique in product.unique)
+    assert len(rows) == sum(unique.part.role in FASTENERS for unique in listed)
     assert all(cell for row in rows for cell in row)
-    assert sum(int(row[1]) for row in rows) == sum(u.count for u in product.unique if u.part.role in FASTENERS)
+    assert sum(int(row[1]) for row in rows) == sum(u.count for u in listed if u.part.role in FASTENERS)
 
 
-def test_the_purchasing_list_has_every_solid_that_is_bought(pack, product):
+def test_the_purchasing_list_has_every_solid_that_is_bought(pack, listed):
     rows = rows_of(pack)
-    counts = {unique.name: unique.count for unique in product.unique}
-    bought = {unique.name for unique in product.unique if unique.part.process == "bought"}
-    listed = [row for row in rows if row["solids"]]
-    assert {name for row in listed for name in row["used_for"].split()} == bought
-    for row in listed:
+    counts = {unique.name: unique.count for unique in listed}
+    bought = {unique.name for unique in listed if unique.part.process == "bought"}
+    ordered = [row for row in rows if row["solids"]]
+    assert {name for row in ordered for name in row["used_for"].split()} == bought
+    for row in ordered:
         assert int(row["solids"]) == sum(counts[name] for name in row["used_for"].split()), row
     assert len({(row["kind"], row["designation"]) for row in rows}) == len(rows)
-    for row in listed:
+    for row in ordered:
         if row["kind"] in ("screw", "bearing", "chain", "retaining ring", "pin", "needle roller", "washer"):
             assert row["standard"], row
         several = {"needle roller": 15, "rubber": 28, "motor": 0.5}.get(row["kind"], 1)
         assert float(row["count"]) == several * int(row["solids"]), row
 
 
-def test_the_purchasing_list_can_be_ordered(pack, product):
+def test_the_purchasing_list_can_be_ordered(pack, listed):
     rows = {row["designation"]: row for row in rows_of(pack)}
     kinds = {row["kind"] for row in rows.values()}
     assert {
@@ -72,7 +92,7 @@ def test_the_purchasing_list_can_be_ordered(pack, product):
         "pin",
         "screw",
     } <= kinds
-    bonded = {u.name for u in product.unique if u.part.joint is not None and "bonded" in u.part.joint.how}
+    bonded = {u.name for u in listed if u.part.joint is not None and "bonded" in u.part.joint.how}
     assert bonded
     glued = {name for row in rows.values() if row["kind"] == "adhesive" for name in row["used_for"].split()}
     assert bonded <= glued

@@ -34,6 +34,15 @@ DESIGNS = {
 }
 
 
+# Every calibration, and designs that differ most; the others take long.
+EVERY_TIME = (("lowest", "reference-3"), ("highest", "reference"), ("U12", "reference"))
+
+
+def some(known):
+    """Names of designs, of which a calibration has only some every time."""
+    return [pytest.param(n, marks=() if (n, known) in EVERY_TIME[:2] else pytest.mark.long) for n in DESIGNS]
+
+
 @dataclass
 class Exported:
     """The files of one design's model, as an export writes them, but for meshes."""
@@ -56,18 +65,26 @@ def made(name, calibration, folder):
     return Exported(folder, calibration, arrays, mujoco.MjModel.from_xml_path(str(folder / "monoped.xml")))
 
 
-@pytest.fixture(scope="module", params=[(name, known) for name in DESIGNS for known in CALIBRATIONS], ids="-".join)
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param((name, known), marks=() if (name, known) in EVERY_TIME else pytest.mark.long)
+        for name in DESIGNS
+        for known in CALIBRATIONS
+    ],
+    ids="-".join,
+)
 def exported(request, tmp_path_factory):
     name, known = request.param
     return made(name, CALIBRATIONS[known], tmp_path_factory.mktemp("model"))
 
 
-@pytest.fixture(scope="module", params=DESIGNS)
+@pytest.fixture(scope="module", params=some("reference-3"))
 def rigid(request, tmp_path_factory):
     return made(request.param, CALIBRATIONS["reference-3"], tmp_path_factory.mktemp("rigid"))
 
 
-@pytest.fixture(scope="module", params=DESIGNS)
+@pytest.fixture(scope="module", params=some("reference"))
 def elastic(request, tmp_path_factory):
     return made(request.param, CALIBRATIONS["reference"], tmp_path_factory.mktemp("elastic"))
 

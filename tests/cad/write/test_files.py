@@ -16,29 +16,46 @@ from ezdxf import edgeminer, edgesmith
 from ezdxf.path import make_path
 from PIL import Image
 
+from pareto_monoped.cad.kernel import client as kernel
 from pareto_monoped.cad.picture.drawing import png
 from pareto_monoped.cad.picture.scenes import section_scene
+from pareto_monoped.cad.product import build_product, step_assembly
 from pareto_monoped.cad.shape.meshes import placed
 from pareto_monoped.cad.shape.outlines import contours
 from pareto_monoped.cad.write import files
 from pareto_monoped.cad.write.dxf import LAYER, NOTES, dxf, is_flat
 from pareto_monoped.cad.write.folder import FILES
 from pareto_monoped.cad.write.meshes import glb, stl, threemf
+from pareto_monoped.cad.write.tables import parts_list
 from pareto_monoped.geometry.features import Cone
+from tests.cad.check.faults import bare
+
+UNITS = ["base_frame", "hip_actuator", "thigh", "knee_actuator", "journal", "shank", "foot"]
 
 
 @pytest.fixture(scope="module")
-def shape(exported):
-    """The assembly's STEP file, read."""
-    return bd.import_step(exported.folder / "assembly.step")
+def leg(product, tmp_path_factory):
+    """The folder of a robot without its actuators, which take longest: its STEP assembly and its parts list."""
+    folder = tmp_path_factory.mktemp("leg")
+    small = build_product(bare(product.robot), product.pose)
+    (folder / "assembly.step").write_bytes(kernel.step_files(step_assembly(small, "monoped")).result()[0])
+    (folder / "bom.csv").write_text(parts_list(small))
+    return folder
 
 
-def test_assembly_step_gives_back_solids_names_colours_and_volumes(exported, shape):
+@pytest.mark.parametrize("which", ["leg", pytest.param("exported", marks=pytest.mark.long)])
+def test_assembly_step_gives_back_solids_names_colours_and_volumes(which, request):
+    made = request.getfixturevalue(which)
+    folder = made if which == "leg" else made.folder
+    shape = bd.import_step(folder / "assembly.step")
     assert [unit.label for unit in shape.children] == [
-        "base_frame", "hip_actuator", "thigh", "knee_actuator", "journal", "shank", "foot",
-    ]  # fmt: skip
-    with (exported.folder / "bom.csv").open() as stream:
+        name for name in UNITS if which == "exported" or not name.endswith("_actuator")
+    ]
+    with (folder / "bom.csv").open() as stream:
         rows = {row["part"]: row for row in csv.DictReader(stream)}
+    for name, row in rows.items():
+        units = [unit.label for unit in shape.children if name in {leaf.label for leaf in unit.children}]
+        assert row["used_in"].split() == units
     leaves = [leaf for unit in shape.children for leaf in unit.children]
     assert len(shape.solids()) == len(leaves) == sum(int(row["count"]) for row in rows.values())
     names = [leaf.label for leaf in leaves]
@@ -182,14 +199,13 @@ def test_design_record_and_readme_tell_the_same(exported, actuator_map):
     assert f"teeth {gears.sun_teeth}/{gears.planet_teeth}/{gears.ring_teeth}" in text
 
 
-def test_parts_list_sizes_and_units_are_those_of_the_files(exported, shape):
+def test_parts_list_sizes_and_costs_are_those_of_the_files(exported):
     with (exported.folder / "bom.csv").open() as stream:
         rows = list(csv.DictReader(stream))
     for row in rows:
         mesh = trimesh.load(exported.folder / "parts" / "stl" / f"{row['part']}.stl")
         assert [float(size) for size in row["size_mm"].split(" x ")] == pytest.approx(mesh.extents, abs=0.051)
-        units = [unit.label for unit in shape.children if row["part"] in {leaf.label for leaf in unit.children}]
-        assert row["used_in"].split() == units
+        assert row["used_in"].split() == [name for name in UNITS if name in row["used_in"].split()]
         assert row["made_or_bought"] == ("bought" if row["process"] == "bought" else "made")
         assert float(row["total_g"]) == pytest.approx(int(row["count"]) * float(row["mass_g"]), abs=0.01 * 50)
         price, hours, cost = (float(row[name]) for name in ("material_eur", "machine_h", "cost_eur"))
@@ -225,6 +241,10 @@ def test_step_files_have_the_colour_of_each_part_s_material(exported, product):
         assert [tuple(map(float, found)) for found in number.findall(text)] == [colours[material]], name
         assert "'2025-01-01T00:00:00'" in text
     text = (exported.folder / "assembly.step").read_text()
+    with (exported.folder / "bom.csv").open() as stream:
+        pieces = sum(int(row["count"]) for row in csv.DictReader(stream))
+    # Every piece is used once in its unit, and every unit once in the robot.
+    assert text.count("NEXT_ASSEMBLY_USAGE_OCCURRENCE(") == pieces + len(UNITS)
     assert {tuple(map(float, found)) for found in number.findall(text)} == {colours[m] for m in materials.values()}
 
 
@@ -233,9 +253,15 @@ def test_laser_drawings_say_that_they_are_in_millimetres(exported):
         assert ezdxf.readfile(path).units == ezdxf.units.MM
 
 
-def test_the_section_shows_the_knee_actuator(product):
-    drawn = files.pictures(product)["knee_actuator_section.png"].result()
+def test_the_section_shows_the_knee_actuator(product, monkeypatch):
+    """The kernel's process is asked for one picture only."""
+    asked = {}
+    monkeypatch.setattr(kernel, "do", lambda draw, scene: (draw, scene))
+    for name, (draw, scene) in files.pictures(product).items():
+        asked[name] = draw, scene
+    monkeypatch.undo()
     knee, hip = (section_scene(product, f"{joint}_actuator") for joint in ("knee", "hip"))
-    assert drawn == png(knee.picture())
+    draw, scene = asked["knee_actuator_section.png"]
+    assert kernel.do(draw, scene).result() == png(knee.picture())
     assert knee.legend != hip.legend
     assert f"planet ({product.robot.knee.gears.planets})" in {row.text for row in knee.legend}
