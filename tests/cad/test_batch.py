@@ -27,7 +27,12 @@ def touch(path):
 
 
 def slow(path):
+    """The slow one ends a second after the bad one has begun, whenever their processes are up."""
+    begun = path.parent / "begun"
+    if path.name == "bad":
+        begun.touch()
     if path.name == "slow":
+        until(begun.exists)
         time.sleep(1.0)
     touch(path)
 
@@ -51,7 +56,7 @@ def test_the_first_failure_is_raised_and_what_follows_is_not_begun(tmp_path, mon
 
 def test_what_is_in_progress_at_a_failure_ends_and_what_follows_is_not_begun(tmp_path, monkeypatch):
     assert made(monkeypatch, tmp_path, ["slow", "bad", "c"], 2, slow) == (["slow"], "bad task")
-    assert [path.name for path in tmp_path.iterdir()] == ["slow"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["begun", "slow"]
 
 
 def test_a_process_that_dies_is_a_failure(tmp_path, monkeypatch):

@@ -18,7 +18,7 @@ from pareto_monoped.materials import Material
 STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.5, 0.5, 0.5))
 BORE, RIM = Circle(radius_mm=4.0), Circle(radius_mm=16.5)
 THREADS = Pattern(radius_mm=1.25, pitch_radius_mm=12.0, count=4)
-PLANET = Prism(outline=ExternalGear(teeth=36, module_mm=0.5), z0_mm=-10.0, z1_mm=0.0, holes=(BORE,))
+PLANET = Prism(outline=ExternalGear(teeth=18, module_mm=1.0), z0_mm=-10.0, z1_mm=0.0, holes=(BORE,))
 HUB = Prism(outline=RIM, z0_mm=0.0, z1_mm=3.0, holes=(InternalGear(teeth=60, module_mm=0.25), THREADS))
 PARTS = [
     (PLANET, (bored(BORE, -10.0, 0.0, enters="both", pressed=True),)),
