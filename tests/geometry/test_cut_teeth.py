@@ -127,3 +127,4 @@ def test_tips_that_are_not_fitted_do_reach_into_roots():
     gears = next(e.actuator.gears for e in map_for("U8").entries if e.actuator)
     depths = tip_depths_mm(replace(gears, tips_fitted=False))
     assert depths["ring", "planet"] > 1e-3
+    assert max(tip_depths_mm(gears).values()) == 0.0  # as it won
