@@ -79,18 +79,22 @@ def test_spacers_beside_needles_are_long_enough_to_be_held(motor):
     [
         # The ring holds the carrier in the main bearing, and with it the whole thigh against the base.
         ("hip_actuator/retaining_ring", {"hip_actuator/carrier", "thigh/thigh_plate_inner", "foot/foot"}),
-        ("knee_actuator/retaining_ring", {"knee_actuator/carrier", "thigh/drive_sprocket"}),
+        pytest.param(
+            "knee_actuator/retaining_ring", {"knee_actuator/carrier", "thigh/drive_sprocket"}, marks=pytest.mark.long
+        ),
         ("knee_actuator/bore_retaining_ring", {"knee_actuator/main_bearing", "knee_actuator/carrier"}),
         ("hip_actuator/planet_needles", {"hip_actuator/planet"}),
         ("knee_actuator/planet_washer", {"knee_actuator/planet"}),
         ("hip_actuator/backplate_screw", {"hip_actuator/backplate", "hip_actuator/motor_rotor"}),
-        ("base_frame/hip_mount_screw", {"hip_actuator/casing", "hip_actuator/motor_stator"}),
+        pytest.param(
+            "base_frame/hip_mount_screw", {"hip_actuator/casing", "hip_actuator/motor_stator"}, marks=pytest.mark.long
+        ),
         ("journal/journal_screw", {"knee_actuator/motor_stator"}),
         ("thigh/turnbuckle_end_hip", {"thigh/turnbuckle_bar", "thigh/turnbuckle_nut_hip"}),
-        ("thigh/drive_sprocket", {"thigh/drive_coupling"}),
+        pytest.param("thigh/drive_sprocket", {"thigh/drive_coupling"}, marks=pytest.mark.long),
         ("thigh/knee_bearing", {"shank/knee_axle", "foot/foot"}),
         ("shank/knee_axle", {"shank/shank_plate_far", "foot/foot"}),
-        ("shank/foot_bolt", {"shank/foot_block", "foot/foot"}),
+        pytest.param("shank/foot_bolt", {"shank/foot_block", "foot/foot"}, marks=pytest.mark.long),
     ],
 )
 def test_what_a_missing_part_held_is_named(robot, removed, freed):
