@@ -14,9 +14,9 @@ from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import run
 
 FILE = {
-    "name": "free", "rules": "iso6336", "gear_list": True, "strength": True, "audit": False, "evaluations": 60,
+    "name": "free", "rules": "iso6336", "gear_list": True, "strength": True, "audit": False, "evaluations": 30,
     "variables": {"thigh_length_m": 0.5, "push_time_s": {"lower": 0.15, "upper": 0.4}},
-    "controller": {"kind": "torque_over_time", "knots": 6}, "algorithm": {"name": "nsga2", "population": 20},
+    "controller": {"kind": "torque_over_time", "knots": 6}, "algorithm": {"name": "nsga2", "population": 12},
 }  # fmt: skip
 USED = ("push_time_s", *(f"{joint}_knot_{k}" for joint in ("hip", "knee") for k in range(1, 7)))
 
@@ -68,15 +68,15 @@ def test_what_a_file_cannot_say_is_refused_in_one_line(changes, words):
 def test_a_study_that_was_stopped_goes_on_as_if_it_never_was(made, tmp_path):
     """Also in the middle of a generation."""
     db = tmp_path / "parts.db"
-    for count in (33, 60):
+    for count in (17, 30):
         run(study(), db, evaluations=count, workers=1)
     pd.testing.assert_frame_equal(trials(db), trials(made))
 
 
 def test_it_begins_with_high_jumps(made):
     """Random profiles hardly leave the floor; those that the virtual leg tells are the jumps of a front."""
-    first = trials(made).head(20)
-    random = study(algorithm={"name": "random", "population": 20}, evaluations=20)
+    first = trials(made).head(12)
+    random = study(algorithm={"name": "random", "population": 12}, evaluations=12)
     run(random, db := made.with_name("random.db"), workers=1)
     assert first["height_m"].median() > trials(db)["height_m"].median() + 0.15
 
