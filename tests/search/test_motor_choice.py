@@ -28,10 +28,12 @@ from pareto_monoped.study.run import resume, run
 from pareto_monoped.study.simulator import load_simulator
 from tests.study.support import (
     assert_refused,
+    change,
     made_evaluations,
     made_generation,
     made_meta,
     made_study,
+    reseal,
     search_among_motors,
     study_of,
 )
@@ -325,7 +327,15 @@ def test_stopped_within_a_generation_and_resumed_it_is_as_in_one_go(db, tmp_path
     study = several(ALL, evaluations=60, audit=False, algorithm={"name": "nsga2", "population": 20})
     path = tmp_path / "cut.db"
     run(study, path, evaluations=27)
-    assert len(read_study(path).trials) == 27
+    trials = read_study(path).trials
+    assert len(trials) == 27
+    # Stored motors are compared with those that the search asks for again.
+    shutil.copy(path, tmp_path / "bent.db")
+    one = next(name for name in ALL if name != trials["motor"][25])
+    change(tmp_path / "bent.db", f"UPDATE monoped_trials SET motor = '{one}' WHERE trial = 25")
+    reseal(tmp_path / "bent.db")
+    with pytest.raises(DatabaseError, match="trials 20 to 26 do not follow"):
+        resume(tmp_path / "bent.db", evaluations=60)
     resume(path, evaluations=60)
     assert read_study(path).trials.equals(read_study(db).trials)
     assert read_study(path).front().equals(read_study(db).front())
