@@ -137,7 +137,14 @@ def test_restored_from_json_it_goes_on_exactly(name, told, long):
     assert json.dumps(restored.state()) == states[told + 2]
 
 
-@pytest.mark.parametrize("name", LEARNING)
+# That TPE learns, every time: tests/study/test_motor_pairs.py.
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("optuna_tpe", marks=pytest.mark.long) if param.values[0] == "optuna_tpe" else param
+        for param in LEARNING
+    ],
+)
 def test_beats_random_search_at_equal_evaluations(name):
     reference = reference_point(HEIGHT_AND_ENERGY, {"height_m": 0.0, "energy_j": 5.0})
 

@@ -2,8 +2,6 @@
 
 import itertools
 import socket
-import subprocess
-import sys
 import threading
 
 import pytest
@@ -229,18 +227,6 @@ def test_psycopg_is_missing(monkeypatch):
         place_of("postgresql://ann:S3cret@db/team?schema=s")
     assert "pip install 'pareto-monoped[postgres]'" in str(caught.value)
     assert "S3cret" not in str(caught.value)
-
-
-def test_files_need_nothing_of_a_server(tmp_path):
-    """Nor to be read: ``test_front_reader.py`` has that."""
-    script = (
-        "import sys; from pathlib import Path; from tests.study.support import made_database; "
-        "made_database(Path(sys.argv[1])); print({'psycopg'} & set(sys.modules))"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script, tmp_path / "s.db"], capture_output=True, text=True, check=False
-    )
-    assert done.stdout == "set()\n", done.stderr
 
 
 def test_no_secret_is_stored_or_told(cluster, address, monkeypatch):

@@ -80,6 +80,7 @@ def test_repair_does_not_bless_damage(mixed, db, sql):
     assert sql("SELECT * FROM trials ORDER BY trial_id") == stored
 
 
+@pytest.mark.parametrize("db", ["file", pytest.param("server", marks=pytest.mark.long)], indirect=True)
 def test_when_optuna_writes_for_us(db, load):
     """In the fall-back, too, our trials are told from others by their number, not by their place."""
     study = made_study()
@@ -97,6 +98,7 @@ def optunas(findings):
     return [line for line in findings if "Optuna" in line]
 
 
+@pytest.mark.parametrize("db", ["file", pytest.param("server", marks=pytest.mark.long)], indirect=True)
 def test_a_study_that_changes_to_optunas_own_calls_is_verified_and_repaired(db, load, sql):
     """A later Optuna may bring another schema: generations before are written directly, those after by Optuna.
 

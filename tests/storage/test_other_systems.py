@@ -86,6 +86,7 @@ from pareto_monoped.compute.processes import Processes
 with Processes() as processes:
     assert processes.submit(int, "7").result() == 7
 assert "pareto_monoped.storage.lock" in sys.modules
+assert "psycopg" not in sys.modules  # files need nothing of a server
 print(len(stored.trials), *sorted(os.listdir(folder)))
 """
 
