@@ -105,10 +105,9 @@ class Profile(Law, Strict):
 
     def basis(self, shares: Floats) -> Floats:
         """Return the matrix that makes torques of knots: at n shares of the way, shape (n, knots)."""
-        from pareto_monoped.jump.torques import between
+        from pareto_monoped.jump.torques import basis
 
-        unit, smooth = np.eye(self.knots), self.between == "cubic"
-        return np.array([[between(share, one, self.knots, smooth) for one in unit] for share in shares])
+        return np.asarray(basis(shares, self.knots, self.between == "cubic"))
 
     def beside_knots(self, record: Any, time_s: Floats, leg_m: Floats, lever_m: Floats) -> Floats:
         """Return what the law tells the knee besides the knots in the states of a push, in N m; the hip gets nothing.

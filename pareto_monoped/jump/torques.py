@@ -88,6 +88,16 @@ def between(share: float, values: Floats, knots: int, smooth: bool) -> float:
     return float(start + u * (out + u * (3.0 * rise - 2.0 * out - in_ + u * (out + in_ - 2.0 * rise))))
 
 
+@compiled
+def basis(shares: Floats, knots: int, smooth: bool) -> Floats:
+    """Return what each knot alone, 1 where the others are 0, is at n shares of the way: shape (n, knots)."""
+    found, unit = np.empty((len(shares), knots)), np.eye(knots)
+    for row in range(len(shares)):
+        for knot in range(knots):
+            found[row, knot] = between(shares[row], unit[knot], knots, smooth)
+    return found
+
+
 @inner
 def _own(
     time_s: float, angle: tuple[float, float], foot: tuple[float, float], speed: tuple[float, float], jump: Any

@@ -1,6 +1,7 @@
 """Every algorithm behind the same face holds the same promises, on a problem whose front is known."""
 
 import json
+from functools import cache
 
 import numpy as np
 import pytest
@@ -65,10 +66,29 @@ def designs(history):
     return np.vstack([values for values, _ in history])
 
 
+# Each generation of Optuna's takes most of the time of a test.
+FEW = {"optuna_nsga2": (0, 2), "optuna_tpe": (0, 2)}
+GENERATIONS = 15
+
+
+@cache
+def whole(name, *, three=False, long=False):
+    """One search of an algorithm: what it asked and was told, and its state as JSON before each generation and last.
+
+    As long as the tests that are not long need it.
+    """
+    definition, states = study(name, **({"objectives": THREE} if three else {})), []
+    algorithm, history = make_algorithm(definition), []
+    for _ in range(FEW[name][-1] + 2 if name in FEW and not long else GENERATIONS):
+        states.append(json.dumps(algorithm.state()))
+        search(definition, 1, algorithm, history, problem=dtlz2 if three else zdt1)
+    return definition, history, [*states, json.dumps(algorithm.state())]
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_asks_for_designs_within_the_bounds(name):
-    definition = study(name)
-    values = designs(search(definition, 6)[1])
+    definition, history, _ = whole(name)
+    values = designs(history)
     assert values.shape[1] == 7
     lower, upper = free_bounds(definition)
     assert (values >= lower).all()
@@ -82,22 +102,14 @@ def test_works_in_the_free_variables_only(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_seed_decides_all(name):
-    first, again, other = (designs(search(study(name, seed=seed), 4)[1]) for seed in (1, 1, 2))
-    assert np.array_equal(first, again)
-    assert not np.array_equal(first, other)
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_leaves_the_global_random_state_alone(name):
+def test_the_seed_decides_all_and_the_global_random_state_is_left_alone(name):
+    first = designs(whole(name)[1][:3])
     np.random.seed(5)  # noqa: NPY002
     before = np.random.get_state()[1].copy()  # noqa: NPY002
-    search(study(name), 3)
+    assert np.array_equal(first, designs(search(study(name), 3)[1]))
     assert np.array_equal(before, np.random.get_state()[1])  # noqa: NPY002
-
-
-# Optuna's restore replays the history, however long; the model of each of its generations takes most of the time.
-SHORT = {"optuna_nsga2": (0, 2), "optuna_tpe": (0, 2)}
+    other = search(study(name, seed=2), 1)[1][0][0]
+    assert not np.array_equal(first[: len(other)], other)
 
 
 def restores(names, all_told):
@@ -106,27 +118,33 @@ def restores(names, all_told):
     for param in names:
         name, marks = (param, ()) if isinstance(param, str) else (param.values[0], param.marks)
         for told in all_told:
-            slow = [pytest.mark.long] if told not in SHORT.get(name, all_told) else []
-            cases.append(pytest.param(name, told, marks=[*marks, *slow]))
+            long = told not in FEW.get(name, all_told)
+            cases.append(pytest.param(name, told, long, marks=[*marks, *([pytest.mark.long] if long else [])]))
     return cases
 
 
-@pytest.mark.parametrize(("name", "told"), restores(NAMES, (0, 1, 2, 5, 13)))
-def test_restored_from_json_it_goes_on_exactly(name, told):
-    definition = study(name)
-    algorithm, history = search(definition, told)
-    state = json.loads(json.dumps(algorithm.state()))
+@pytest.mark.parametrize(("name", "told", "long"), restores(NAMES, (0, 1, 2, 5, 13)))
+def test_restored_from_json_it_goes_on_exactly(name, told, long):
+    """For two generations: the second is made by what the restored one was told, too."""
+    definition, history, states = whole(name, long=long)
     restored = make_algorithm(definition)
-    restored.restore(state, iter(history))
-    _, expected = search(definition, 4, algorithm)
-    _, got = search(definition, 4, restored)
-    assert len(got) == len(expected) > 0
-    for (values, _), (wanted, _) in zip(got, expected, strict=True):
+    restored.restore(json.loads(states[told]), iter(history[:told]))
+    assert json.dumps(restored.state()) == states[told]
+    _, got = search(definition, 2, restored)
+    assert len(got) == 2
+    for (values, _), (wanted, _) in zip(got, history[told:], strict=False):
         assert np.array_equal(values, wanted)
-    assert json.dumps(restored.state()) == json.dumps(algorithm.state())
+    assert json.dumps(restored.state()) == states[told + 2]
 
 
-@pytest.mark.parametrize("name", LEARNING)
+# That TPE learns, every time: tests/study/test_motor_pairs.py.
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("optuna_tpe", marks=pytest.mark.long) if param.values[0] == "optuna_tpe" else param
+        for param in LEARNING
+    ],
+)
 def test_beats_random_search_at_equal_evaluations(name):
     reference = reference_point(HEIGHT_AND_ENERGY, {"height_m": 0.0, "energy_j": 5.0})
 
@@ -241,16 +259,14 @@ def dtlz2(values, lower, upper):
     )
 
 
-@pytest.mark.parametrize(("name", "told"), restores(OF_THREE, (0, 2, 6)))
-def test_with_three_objectives_it_goes_on_exactly_from_json(name, told):
-    definition = study(name, objectives=THREE)
-    algorithm, history = search(definition, told, problem=dtlz2)
+@pytest.mark.parametrize(("name", "told", "long"), restores(OF_THREE, (0, 2, 6)))
+def test_with_three_objectives_it_goes_on_exactly_from_json(name, told, long):
+    definition, history, states = whole(name, three=True, long=long)
     restored = make_algorithm(definition)
-    restored.restore(json.loads(json.dumps(algorithm.state())), iter(history))
-    _, expected = search(definition, 3, algorithm, problem=dtlz2)
-    _, got = search(definition, 3, restored, problem=dtlz2)
-    assert len(got) == len(expected) > 0
-    for (values, _), (wanted, _) in zip(got, expected, strict=True):
+    restored.restore(json.loads(states[told]), iter(history[:told]))
+    _, got = search(definition, 2, restored, problem=dtlz2)
+    assert len(got) == 2
+    for (values, _), (wanted, _) in zip(got, history[told:], strict=False):
         assert np.array_equal(values, wanted)
 
 

@@ -94,7 +94,7 @@ def test_a_small_generation_of_three_objectives_keeps_its_size(population):
     three = Objectives(names=("height_m", "energy_j", "mass_kg"))
     space = replace(SPACE, objectives=three)
     search = SurrogateSearch(space, SurrogateSettings(name="surrogate", population=population), seed=3)
-    for _ in range(40):
+    for _ in range(15):
         proposal = search.ask()
         assert len(proposal.values) == population
         scores = jump(proposal.values)

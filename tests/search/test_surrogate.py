@@ -366,7 +366,7 @@ def test_a_part_of_the_front_far_from_the_rest_in_the_space_is_found():
         points = np.column_stack((height, energy))
         return Scores(objectives=HEIGHT_AND_ENERGY, values=points, violation=zeros, constraints=zeros[:, None])
 
-    for seed in range(1, 6):
+    for seed in (1, 2):
         algorithm, best = SurrogateSearch(hidden, SurrogateSettings(name="surrogate"), seed), 0.0
         for _ in range(15):
             scores = jump(algorithm.ask().values)
@@ -479,7 +479,7 @@ def test_a_long_front_is_thinned_from_end_to_end(small_archive):
 
 def test_a_search_that_thins_its_archive_goes_on_alike_after_a_restore(small_archive):
     search, history = SurrogateSearch(SPACE, SETTINGS, 3), []
-    for _ in range(40):
+    for _ in range(24):
         asked = search.ask().values
         scores = scored(asked)
         search.tell(scores)

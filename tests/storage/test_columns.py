@@ -5,7 +5,7 @@ from pareto_monoped.design import NAMES
 from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.storage.columns import COLUMNS, LATER, REQUIRED
 from pareto_monoped.storage.reader import read_study
-from tests.study.support import made_database, made_study
+from tests.study.support import copied_database, made_database, made_study
 
 STORED = Path(__file__).parent / "data" / "plain.db"
 
@@ -51,7 +51,7 @@ def test_the_frame_has_the_types_of_the_table(tmp_path):
 
 def test_a_column_of_a_later_version_is_read_as_a_number(tmp_path):
     path = tmp_path / "s.db"
-    made_database(path)
+    copied_database(path)
     connection = sqlite3.connect(path)
     connection.execute("ALTER TABLE monoped_trials ADD COLUMN later_j REAL DEFAULT 2.5")
     connection.commit()

@@ -11,7 +11,7 @@ from pareto_monoped.errors import DatabaseError, DiskError
 from pareto_monoped.storage.place import storage_of
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.store import Store
-from tests.study.support import made_database, made_study
+from tests.study.support import copied_database, made_database, made_study
 
 
 def refused(path, words, opener=read_study):
@@ -71,7 +71,7 @@ def test_a_study_of_optuna_alone(tmp_path):
 
 @pytest.mark.parametrize("opener", [read_study, writer])
 def test_a_study_of_a_newer_version(tmp_path, opener):
-    made_database(tmp_path / "s.db")
+    copied_database(tmp_path / "s.db")
     change(tmp_path / "s.db", "UPDATE monoped_meta SET value = '99' WHERE key = 'format'")
     refused(tmp_path / "s.db", ["format 99 is newer", "update pareto-monoped"], opener)
 
@@ -85,14 +85,14 @@ def test_a_study_of_a_newer_version(tmp_path, opener):
     ],
 )
 def test_views_and_triggers_of_a_stranger_never_run(tmp_path, statement, opener):
-    made_database(tmp_path / "s.db")
+    copied_database(tmp_path / "s.db")
     change(tmp_path / "s.db", statement)
     refused(tmp_path / "s.db", ["view or trigger", "do not trust it"], opener)
 
 
 def test_a_file_marked_read_only_can_be_read_but_not_run(tmp_path):
     path = tmp_path / "s.db"
-    made_database(path)
+    copied_database(path)
     path.chmod(0o444)
     refused(path, ["is read-only", "chmod"], writer)
     assert len(read_study(path).trials) == 6
@@ -100,7 +100,7 @@ def test_a_file_marked_read_only_can_be_read_but_not_run(tmp_path):
 
 def test_a_database_cut_off_in_the_middle(tmp_path):
     path = tmp_path / "s.db"
-    made_database(path)
+    copied_database(path)
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
     refused(path, ["damaged"], writer)
 
@@ -109,7 +109,7 @@ def test_a_database_cut_off_in_the_middle(tmp_path):
 def test_overwritten_pages_never_end_in_another_exception(tmp_path, seed):
     """Random damage is either not noticed, because it hit nothing that is read, or it is a clear error."""
     path = tmp_path / "s.db"
-    made_database(path)
+    copied_database(path)
     generator = random.Random(seed)
     content = bytearray(path.read_bytes())
     for _ in range(8):
@@ -123,7 +123,7 @@ def test_overwritten_pages_never_end_in_another_exception(tmp_path, seed):
 
 def test_a_reader_does_not_wait_for_a_writer(tmp_path):
     path = tmp_path / "s.db"
-    study, _ = made_database(path)
+    study = copied_database(path)
     with Store(path, study) as store:
         store._connection.execute("BEGIN IMMEDIATE")
         store._connection.execute("DELETE FROM monoped_history")
@@ -133,7 +133,7 @@ def test_a_reader_does_not_wait_for_a_writer(tmp_path):
 
 def test_a_database_that_another_program_holds(tmp_path, monkeypatch):
     path = tmp_path / "s.db"
-    made_database(path)
+    copied_database(path)
     connection = sqlite3.connect(path, isolation_level=None)
     connection.execute("BEGIN EXCLUSIVE")
     monkeypatch.setattr("pareto_monoped.storage.file.READ_TIMEOUT_S", 0.1)

@@ -14,7 +14,7 @@ DATA = Path(__file__).parent / "data"
 
 
 def test_an_agility_filled_in_equals_a_simulated_one_to_the_last_bit(tmp_path):
-    study = study_from_dict({"name": "agile", "evaluations": 40, "seed": 2}, source="test")
+    study = study_from_dict({"name": "agile", "evaluations": 16, "seed": 2, "audit": False}, source="test")
     run(study, tmp_path / "agile.db")
     data = read_study(tmp_path / "agile.db")
     rows = data.trials[data.trials["status"] == "ok"]

@@ -2,8 +2,6 @@
 
 import itertools
 import socket
-import subprocess
-import sys
 import threading
 
 import pytest
@@ -16,7 +14,7 @@ from pareto_monoped.storage.status import status
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.run import resume, run
 from tests.study.same import assert_same_study
-from tests.study.support import made_database, made_evaluations, made_generation, made_study
+from tests.study.support import copied_database, made_database, made_evaluations, made_generation, made_study
 
 pytest.importorskip("psycopg", reason="the extra postgres is not installed")
 
@@ -24,7 +22,7 @@ _NUMBERS = itertools.count()
 
 STUDY = {
     "name": "s",
-    "evaluations": 80,
+    "evaluations": 60,
     "strength": False,
     "audit": False,
     "algorithm": {"name": "nsga2", "population": 20},
@@ -66,7 +64,7 @@ def test_no_such_user(cluster):
 
 
 def test_passwords(cluster, place, address, monkeypatch):
-    made_database(place)
+    copied_database(place)
     cluster.sql(
         "CREATE ROLE guarded LOGIN PASSWORD 'S3cret'",
         f"GRANT USAGE ON SCHEMA {place.schema} TO guarded",
@@ -100,7 +98,7 @@ def test_no_such_study(cluster, place):
 
 def test_an_address_without_schema_names_the_studies_there(cluster):
     """The first ten by name: other tests have made many on the same server."""
-    made_database(place_of(cluster.address("a_study")))
+    copied_database(place_of(cluster.address("a_study")))
     refused(DatabaseError, place_of(cluster.address()), "names no study", "add ?schema=NAME", "a_study")
 
 
@@ -108,7 +106,7 @@ def test_an_address_without_schema_names_the_studies_there(cluster):
 def test_an_address_without_schema_counts_the_studies_that_it_does_not_name(cluster, monkeypatch, unnamed, words):
     """It said "and 1 others"."""
     for _ in range(3):
-        made_database(place_of(cluster.address(f"counted_{next(_NUMBERS)}")))
+        copied_database(place_of(cluster.address(f"counted_{next(_NUMBERS)}")))
     ((there,),) = cluster.sql("SELECT count(*) FROM pg_class WHERE relname = 'monoped_meta'")
     monkeypatch.setattr("pareto_monoped.storage.server._NAMED", there - unnamed)
     with pytest.raises(DatabaseError) as caught:
@@ -120,7 +118,7 @@ def test_an_address_without_schema_counts_the_studies_that_it_does_not_name(clus
 
 def test_a_study_that_its_owner_has_not_opened_to_a_role_is_not_said_to_be_missing(cluster, place, address):
     """It was "no such study on the server; check the schema, or run a study first"."""
-    made_database(place)
+    copied_database(place)
     cluster.sql("CREATE ROLE colleague LOGIN")
     theirs = place_of(address.replace("//owner@", "//colleague@"))
     grants = [
@@ -213,7 +211,7 @@ def test_the_server_goes_away_in_the_middle_and_comes_back(cluster, tmp_path, pl
 
 
 def test_a_session_that_the_server_ends_is_said_in_one_line(cluster, place):
-    study, _ = made_database(place)
+    study = copied_database(place)
     with Store(place, study) as store:
         cluster.sql("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE application_name LIKE 'pareto-mon%'")
         with pytest.raises(ServerError, match=r"the server went away .*all acknowledged trials are safe"):
@@ -229,27 +227,6 @@ def test_psycopg_is_missing(monkeypatch):
         place_of("postgresql://ann:S3cret@db/team?schema=s")
     assert "pip install 'pareto-monoped[postgres]'" in str(caught.value)
     assert "S3cret" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("act", "unwanted"),
-    [
-        ("from tests.study.support import made_database as act", {"psycopg"}),
-        ("from pareto_monoped.storage.status import status as act", {"psycopg", "sqlalchemy", "optuna"}),
-        ("from pareto_monoped.storage.front_reader import read_front as act", {"psycopg", "sqlalchemy", "optuna"}),
-    ],
-)
-def test_files_need_nothing_of_a_server(tmp_path, act, unwanted):
-    """To read a file takes neither Optuna nor SQLAlchemy, whose import would be felt."""
-    if "made_database" not in act:
-        made_database(tmp_path / "s.db")
-    script = (
-        f"import sys; from pathlib import Path; {act}; act(Path(sys.argv[1])); print({unwanted} & set(sys.modules))"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script, tmp_path / "s.db"], capture_output=True, text=True, check=False
-    )
-    assert done.stdout == "set()\n", done.stderr
 
 
 def test_no_secret_is_stored_or_told(cluster, address, monkeypatch):

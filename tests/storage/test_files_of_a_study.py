@@ -15,7 +15,7 @@ from pareto_monoped.storage.lock import holder, locked
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.run import resume
-from tests.study.support import made_database, made_evaluations, made_generation, made_study
+from tests.study.support import copied_database, made_evaluations, made_generation, made_study
 
 ROOT = Path(__file__).parents[2]
 
@@ -36,7 +36,7 @@ def replaced(file):
 @pytest.mark.parametrize("harm", [Path.unlink, renamed, replaced])
 @pytest.mark.parametrize("name", ["s.db", "s.db-wal"])
 def test_it_is_noticed_before_anything_more_is_acknowledged(tmp_path, name, harm):
-    made_database(tmp_path / "s.db")
+    copied_database(tmp_path / "s.db")
     with locked(tmp_path / "s.db") as lock, Store(tmp_path / "s.db", made_study(), lock=lock) as store:
         store.add(one(2))
         safe = (tmp_path / "s.db-lock").read_bytes()
@@ -125,8 +125,10 @@ def test_through_a_link_it_is_the_same_study(tmp_path):
                 pass
 
 
-# Both in any command: tests/cli/test_process.py.
-@pytest.mark.parametrize("number", [signal.SIGTERM, pytest.param(signal.SIGHUP, marks=pytest.mark.long)])
+# In any command: tests/cli/test_process.py; what a run does with each: tests/study/test_interrupt.py; a run that one
+# of them ends: tests/study/test_run.py.
+@pytest.mark.long
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_other_signals_end_it_as_ctrl_c_does(tmp_path, number):
     toml = tmp_path / "s.toml"
     toml.write_text('name = "s"\nevaluations = 100000\naudit = false\n')

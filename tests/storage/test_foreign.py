@@ -11,7 +11,7 @@ from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.status import status
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.run import resume, run
-from tests.study.support import made_database, made_evaluations, made_generation, made_study
+from tests.study.support import copied_database, made_database, made_evaluations, made_generation, made_study
 
 
 def ask_and_tell(load, values=None, name="made"):
@@ -28,7 +28,7 @@ def ask_and_tell(load, values=None, name="made"):
 def mixed(db, load):
     """Six trials of ours, one foreign, one of ours, one foreign while we are at work, one of ours, one foreign."""
     study = made_study()
-    made_database(db)
+    copied_database(db)
     foreign = [ask_and_tell(load)]
     one = made_evaluations([0.75], [8.5])
     with Store(db, study) as store:
@@ -80,6 +80,7 @@ def test_repair_does_not_bless_damage(mixed, db, sql):
     assert sql("SELECT * FROM trials ORDER BY trial_id") == stored
 
 
+@pytest.mark.parametrize("db", ["file", pytest.param("server", marks=pytest.mark.long)], indirect=True)
 def test_when_optuna_writes_for_us(db, load):
     """In the fall-back, too, our trials are told from others by their number, not by their place."""
     study = made_study()
@@ -97,13 +98,14 @@ def optunas(findings):
     return [line for line in findings if "Optuna" in line]
 
 
+@pytest.mark.parametrize("db", ["file", pytest.param("server", marks=pytest.mark.long)], indirect=True)
 def test_a_study_that_changes_to_optunas_own_calls_is_verified_and_repaired(db, load, sql):
     """A later Optuna may bring another schema: generations before are written directly, those after by Optuna.
 
     Foreign trials stand before, between and after ours; every trial of ours is still found in Optuna's tables.
     """
     study = made_study()
-    made_database(db)
+    copied_database(db)
     foreign = [ask_and_tell(load, [9.0, 0.1])]
     two = made_evaluations([0.75, 0.76], [8.5, 8.6])
     with Store(db, study, known_schemas=()) as store:
@@ -127,15 +129,16 @@ def test_a_study_that_changes_to_optunas_own_calls_is_verified_and_repaired(db, 
     assert optunas(verify(db).findings) != []
 
 
+@pytest.mark.parametrize("db", ["file", pytest.param("server", marks=pytest.mark.long)], indirect=True)
 def test_a_run_goes_on_as_without_them(db, load, tmp_path):
     study = study_from_dict(
-        {"name": "f", "evaluations": 40, "audit": False, "algorithm": {"name": "nsga2", "population": 20}},
+        {"name": "f", "evaluations": 20, "audit": False, "algorithm": {"name": "nsga2", "population": 10}},
         source="test",
     )
     run(study, tmp_path / "whole.db", workers=1)
-    run(study, db, workers=1, evaluations=20)
+    run(study, db, workers=1, evaluations=10)
     ask_and_tell(load, [3.0, 0.5], "f")
     said = []
-    resume(db, evaluations=40, workers=1, notify=said.append)
+    resume(db, evaluations=20, workers=1, notify=said.append)
     assert any("1 of Optuna's trials is not of this package" in line for line in said)
     assert read_study(db).trials.equals(read_study(tmp_path / "whole.db").trials)

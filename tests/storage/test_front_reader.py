@@ -1,5 +1,6 @@
 """What is read without all trials: the kept front, the status."""
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -16,16 +17,24 @@ from pareto_monoped.storage.place import storage_of
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.status import status
 from pareto_monoped.storage.store import Store
-from tests.study.support import UNSEALED, change, made_database, made_evaluations, made_generation, made_study
+from tests.study.support import (
+    UNSEALED,
+    change,
+    copied_database,
+    made_database,
+    made_evaluations,
+    made_generation,
+    made_study,
+)
 
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.fixture
-def large(tmp_path):
+@pytest.fixture(scope="module")
+def large_once(tmp_path_factory):
     """600 trials with an optional variable free, some front designs ill-conditioned, then 300 more."""
     path, study, generator = (
-        tmp_path / "s.db",
+        tmp_path_factory.mktemp("large") / "s.db",
         made_study(variables={"knee_release_rad": {"lower": 0.0, "upper": 0.6}}),
         np.random.default_rng(4),
     )
@@ -37,6 +46,12 @@ def large(tmp_path):
             if number == 5:
                 store.set_audits([(int(t), k % 2 == 0, {}) for k, t in enumerate(read_study(path).front()["trial"])])
     return path
+
+
+@pytest.fixture
+def large(large_once, tmp_path):
+    """A copy of it."""
+    return Path(shutil.copy(large_once, tmp_path))
 
 
 @pytest.mark.parametrize("statements", [(), UNSEALED], ids=["kept", "format 1"])
@@ -105,10 +120,10 @@ def test_status_checks_what_it_prints(large, statement, words):
         status(large)
 
 
-@pytest.fixture
-def long(tmp_path):
+@pytest.fixture(scope="module")
+def long_once(tmp_path_factory):
     """A study as killed: 900 trials that are all on the front, some ill-conditioned, then 71 one by one."""
-    path, study, generator = tmp_path / "s.db", made_study(), np.random.default_rng(6)
+    path, study, generator = tmp_path_factory.mktemp("long") / "s.db", made_study(), np.random.default_rng(6)
     made_database(path, [], study)
     with Store(path, study) as store:
         for number, (first, count) in enumerate([(0, 900), *((900 + k, 1) for k in range(71))]):
@@ -117,6 +132,13 @@ def long(tmp_path):
             if number == 0:
                 store.set_audits([(t, t % 7 > 0, {}) for t in range(0, 900, 5)])
     return path, study
+
+
+@pytest.fixture
+def long(long_once, tmp_path):
+    """A copy of it."""
+    path, study = long_once
+    return Path(shutil.copy(path, tmp_path)), study
 
 
 def assert_same_front(path):
@@ -167,24 +189,27 @@ def alone(code, path):
 STATUS = "from pareto_monoped.storage.status import status\nstatus(path)\n"
 FRONT = "from pareto_monoped.storage.front_reader import read_front\nread_front(path)\n"
 PEAK_KB = r"print(re.search(r'VmHWM:\s+(\d+)', Path('/proc/self/status').read_text())[1])"
-SIMULATORS = ("mujoco", "numba", "scipy", "optuna", "sqlalchemy", "pymoo", "matplotlib", "pareto_monoped.jump.evaluate")
+OTHERS = (
+    "mujoco", "numba", "scipy", "optuna", "sqlalchemy", "psycopg", "pymoo", "matplotlib",
+    "pareto_monoped.jump.evaluate",
+)  # fmt: skip
 
 
-@pytest.mark.parametrize(("code", "more"), [(STATUS, ("pandas", "moocore")), (FRONT, ())])
-def test_they_import_no_simulator(tmp_path, code, more):
+def test_they_import_no_simulator_and_nothing_of_a_server(tmp_path):
     """Imports are most of what both commands take."""
-    made_database(tmp_path / "s.db")
-    said = alone(f"{code}print([m for m in {(*SIMULATORS, *more)} if m in sys.modules])", tmp_path / "s.db")
-    assert said.strip() == "[]"
+    copied_database(tmp_path / "s.db")
+    code = [STATUS, f"print([m for m in {(*OTHERS, 'pandas', 'moocore')} if m in sys.modules])\n"]
+    code += [FRONT, f"print([m for m in {OTHERS} if m in sys.modules])\n"]
+    assert alone("".join(code), tmp_path / "s.db") == "[]\n[]\n"
 
 
-@pytest.mark.parametrize("code", [STATUS, FRONT])
+@pytest.mark.parametrize("code", [pytest.param(STATUS, marks=pytest.mark.long), STATUS + FRONT])
 def test_a_large_checkpoint_costs_them_nothing(tmp_path, code):
     """They do not read it, so the peak of their memory is as with a small one."""
     peaks = []
-    for name, megabytes in (("small.db", 0), ("large.db", 100)):
-        made_database(tmp_path / name)
+    for name, megabytes in (("small.db", 0), ("large.db", 50)):
+        copied_database(tmp_path / name)
         change(tmp_path / name, f"UPDATE monoped_checkpoint SET state = hex(zeroblob({megabytes} * 500000))")
         peaks.append(int(alone(f"{code}{PEAK_KB}", tmp_path / name)))
-    assert (tmp_path / "large.db").stat().st_size > 100e6
-    assert peaks[1] - peaks[0] < 10_000  # of the 98,000 kB that reading it would take at least
+    assert (tmp_path / "large.db").stat().st_size > 50e6
+    assert peaks[1] - peaks[0] < 10_000  # of the 49,000 kB that reading it would take at least

@@ -19,7 +19,7 @@ from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.status import status
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.run import run
-from tests.study.support import made_database, made_evaluations, made_generation, made_study
+from tests.study.support import copied_database, made_database, made_evaluations, made_generation, made_study
 
 ROOT = Path(__file__).parents[2]
 KILLER = r"""
@@ -77,58 +77,68 @@ def killed_at(number, path, killer):
     return done.returncode, "added" in done.stdout
 
 
-def hot(folder, killer):
-    """A study whose last session was killed as it left the mode with a write-ahead log."""
-    made_database(folder / "s.db")
-    assert killed_at(2, folder / "s.db", killer) == (-9, True)
-    assert (folder / "s.db-journal").stat().st_size > 0
-    return folder / "s.db"
-
-
-def test_killed_at_every_removal_of_a_journal(tmp_path, killer):
-    seen = []
+@pytest.fixture(scope="module")
+def sessions(tmp_path_factory, killer):
+    """Sessions killed at each removal of a journal, and one that no kill came to: code, what it said, its files."""
+    found = []
     for number in range(1, 9):
-        path = tmp_path / f"{number}.db"
-        made_database(path)
-        code, added = killed_at(number, path, killer)
-        if code == 0:
+        path = tmp_path_factory.mktemp("killed") / "s.db"
+        copied_database(path)
+        found.append((*killed_at(number, path, killer), path.parent))
+        if found[-1][0] == 0:
             break
+    return found
+
+
+@pytest.fixture
+def hot(sessions, tmp_path):
+    """A study whose last session was killed as it left the mode with a write-ahead log."""
+    code, added, folder = sessions[1]
+    assert (code, added) == (-9, True)
+    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
+    assert (tmp_path / "s.db-journal").stat().st_size > 0
+    return tmp_path / "s.db"
+
+
+def test_killed_at_every_removal_of_a_journal(sessions, tmp_path):
+    seen, path = [], tmp_path / "s.db"
+    *killed, last = sessions
+    for code, added, folder in killed:
+        shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
         assert code == -9
         seen.append((added, Path(f"{path}-journal").exists()))
         assert status(path)["evaluations"] == (7 if added else 6)
         assert len(read_study(path).trials) == (7 if added else 6)
-        left = sorted(file.name for file in tmp_path.iterdir() if file.name.startswith(f"{number}.db-"))
-        assert "-journal" not in "".join(left)
+        assert "-journal" not in "".join(file.name for file in tmp_path.iterdir())
         study = made_study()
         with Store(path, study) as store:
             first = len(read_study(path).trials)
             store.add(made_generation(study, first - 4, first, made_evaluations([0.75], [8.5]), state={}))
-        assert [f.name for f in tmp_path.iterdir() if f.name.startswith(f"{number}.db")] == [path.name]
+        assert [file.name for file in tmp_path.iterdir()] == [path.name]
+        path.unlink()
     # Both moments: before a generation was stored, on the way into the log, and after it, on the way out.
-    assert code == 0
+    assert last[0] == 0
     assert (False, True) in seen
     assert (True, True) in seen
 
 
-def test_the_process_that_holds_the_lock_heals_too(tmp_path, killer):
-    path = hot(tmp_path, killer)
-    with locked(path):
-        assert len(read_study(path).trials) == 7
+def test_the_process_that_holds_the_lock_heals_too(hot, tmp_path):
+    with locked(hot):
+        assert len(read_study(hot).trials) == 7
     assert not (tmp_path / "s.db-journal").exists()
 
 
-def test_where_nothing_can_be_written_the_journal_is_named(tmp_path, killer, monkeypatch):
-    path = hot(tmp_path, killer)
+def test_where_nothing_can_be_written_the_journal_is_named(hot, monkeypatch):
     monkeypatch.setattr("pareto_monoped.storage.file._folder_writable", lambda path: False)
     with pytest.raises(DatabaseError, match=r"'s.db-journal' beside it, which must be rolled back; allow writing"):
-        read_study(path)
+        read_study(hot)
     monkeypatch.undo()
-    assert len(read_study(path).trials) == 7
+    assert len(read_study(hot).trials) == 7
 
 
 def test_what_a_killed_creation_left_is_deleted(tmp_path):
     """Its journal, too: SQLite would roll it back into the next file of that name."""
-    made_database(tmp_path / "other.db")
+    copied_database(tmp_path / "other.db")
     shutil.copy(tmp_path / "other.db", tmp_path / ".s.db-new")
     (tmp_path / ".s.db-new-journal").write_bytes(b"\xd9\xd5\x05\xf9\x20\xa1\x63\xd7" + bytes(504))
     made_database(tmp_path / "s.db")

@@ -21,7 +21,16 @@ from pareto_monoped.storage.status import status
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.run import run
 from tests.compute.dask_here import until
-from tests.study.support import UNSEALED, change, made_database, made_evaluations, made_generation, made_study, reseal
+from tests.study.support import (
+    UNSEALED,
+    change,
+    copied_database,
+    made_database,
+    made_evaluations,
+    made_generation,
+    made_study,
+    reseal,
+)
 
 
 def one(number=2, first=6):
@@ -67,7 +76,7 @@ def test_optuna_reads_what_was_stored(db, options, load):
 
 
 def test_optunas_front_is_ours(db, load):
-    made_database(db)
+    copied_database(db)
     best = {trial.number for trial in load().best_trials}
     assert best == set(read_study(db).front()["trial"]) == {0, 3, 4}
 
@@ -86,7 +95,7 @@ def test_optuna_has_the_objectives_of_the_study(db, options, load):
 
 
 def test_optuna_can_go_on_with_it(db, load):
-    made_database(db)
+    copied_database(db)
     loaded = load()
     loaded.optimize(lambda trial: (trial.suggest_float(NAMES[0], 0.3, 0.5), 1.0), n_trials=1)
     assert loaded.trials[-1].number == 6
@@ -142,14 +151,14 @@ def test_trials_that_optuna_wrote_before_a_kill_are_not_written_twice(db, load):
 
 
 def test_the_front_is_sorted_and_holds_feasible_trials_only(db):
-    made_database(db)
+    copied_database(db)
     front = read_study(db).front()
     assert front["trial"].tolist() == [4, 0, 3]
     assert front["height_m"].tolist() == [0.7, 0.8, 1.1]
 
 
 def test_ill_conditioned_trials_leave_the_front_and_others_come_up(db):
-    study, _ = made_database(db)
+    study = copied_database(db)
     with Store(db, study) as store:
         store.set_audits([(0, True, {"spread_height_m": 1e-5}), (3, False, {"spread_height_m": float("inf")})])
     data = read_study(db)
@@ -160,7 +169,7 @@ def test_ill_conditioned_trials_leave_the_front_and_others_come_up(db):
 
 
 def test_history_and_meta(db):
-    made_database(db)
+    copied_database(db)
     data = read_study(db)
     assert data.history["evaluations"].tolist() == [4, 6]
     assert data.history["hypervolume"].tolist() == [0.0, 1.0]
@@ -177,7 +186,7 @@ def test_a_study_without_trials(db):
 
 
 def test_a_study_of_format_1_is_read_and_marked_and_never_sealed(db, sql):
-    made_database(db)
+    copied_database(db)
     sealed = read_study(db)
     sql(*UNSEALED)
     assert not read_study(db).sealed
@@ -191,7 +200,7 @@ def test_a_study_of_format_1_is_read_and_marked_and_never_sealed(db, sql):
 
 def test_a_study_gets_the_columns_that_came_later_when_it_is_opened_for_writing(tmp_path):
     path, last = tmp_path / "s.db", LATER[-1].name
-    made_database(path)
+    copied_database(path)
     before = read_study(path)
     change(path, f"ALTER TABLE monoped_trials DROP COLUMN {last}")
     reseal(path)
@@ -205,7 +214,7 @@ def test_a_study_gets_the_columns_that_came_later_when_it_is_opened_for_writing(
 @pytest.mark.parametrize("kept", range(4))
 def test_a_study_cannot_be_made_one_of_an_earlier_version_to_hide_an_edit(db, sql, kept):
     """Each of the statements is left out once, and once none that touches the version."""
-    made_database(db)
+    copied_database(db)
     sql("UPDATE monoped_trials SET height_m = 2.0 WHERE trial = 3")
     sql(*(statement for k, statement in enumerate(UNSEALED) if k != kept))
     for reader in (read_study, read_front, status, partial(Store, study=made_study())):
@@ -214,7 +223,7 @@ def test_a_study_cannot_be_made_one_of_an_earlier_version_to_hide_an_edit(db, sq
 
 
 def test_trials_of_a_study_of_format_1_are_numbered_from_0_on(db, sql):
-    made_database(db)
+    copied_database(db)
     sql(*UNSEALED, "DELETE FROM monoped_trials WHERE trial = 2")
     for reader in (read_study, read_front, status):
         with pytest.raises(DatabaseError, match="trial 3 stands in place 2, where trial 2 must be"):
@@ -222,7 +231,7 @@ def test_trials_of_a_study_of_format_1_are_numbered_from_0_on(db, sql):
 
 
 def test_a_transaction_that_fails_leaves_no_link(db):
-    study, _ = made_database(db)
+    study = copied_database(db)
     one = made_evaluations([0.75], [8.5])
     with Store(db, study) as store:
         with pytest.raises(DatabaseError):
@@ -241,7 +250,7 @@ def test_there_is_nothing_before_a_study_is_made(db):
 
 
 def test_a_study_is_never_replaced(db):
-    made_database(db)
+    copied_database(db)
     with pytest.raises(DatabaseError, match="another program has filled it meanwhile"):
         made_database(db)
     assert len(read_study(db).trials) == 6
@@ -259,13 +268,13 @@ def test_a_creation_that_fails_leaves_nothing_and_can_be_repeated(db, tmp_path, 
     if hasattr(db, "schema"):
         schemas = request.getfixturevalue("cluster").sql("SELECT nspname FROM pg_namespace")
         assert [name for (name,) in schemas if name.startswith(db.schema)] == []
-    made_database(db)
+    copied_database(db)
     assert len(read_study(db).trials) == 6
 
 
 def test_one_process_at_a_time_runs_a_study(db, monkeypatch):
     """A second one is refused and told who runs; other studies go their own way, and an error frees the lock."""
-    made_database(db)
+    copied_database(db)
     storage = storage_of(db)
     assert storage.holder() is None
     with storage.locked():
@@ -294,7 +303,7 @@ def write_without_waiting(db):
 
 
 def test_one_connection_at_a_time_writes(db, monkeypatch):
-    study, _ = made_database(db)
+    study = copied_database(db)
     with Store(db, study) as store:
         monkeypatch.setattr("pareto_monoped.storage.server._WAIT_S", 0.1)
         with (
@@ -308,7 +317,7 @@ def test_one_connection_at_a_time_writes(db, monkeypatch):
 
 def test_a_reader_sees_one_moment(db):
     """What is added while a study is read comes to the next reader."""
-    study, _ = made_database(db)
+    study = copied_database(db)
     with Store(db, study) as store:
         with storage_of(db).reading() as connection:
             before = connection.execute("SELECT count(*) FROM monoped_trials").fetchone()
@@ -318,7 +327,7 @@ def test_a_reader_sees_one_moment(db):
 
 
 def test_a_reader_cannot_write(db):
-    made_database(db)
+    copied_database(db)
     storage = storage_of(db)
     with pytest.raises(DatabaseError, match="is read-only"), storage.reading() as connection:
         connection.execute("DELETE FROM monoped_trials")
@@ -334,7 +343,7 @@ def test_a_reader_cannot_write(db):
 
 
 def test_rows_of_the_same_key_are_replaced(db):
-    study, _ = made_database(db)
+    study = copied_database(db)
     with Store(db, study) as store:
         store.set_audits([(0, True, {"spread_height_m": 0.5}), (1, True, {"spread_height_m": 0.25})])
         store.set_audits([(1, True, {"spread_height_m": 0.125})])
@@ -361,7 +370,7 @@ def test_rows_of_the_same_key_are_replaced(db):
 )
 @pytest.mark.parametrize("db", ["file", pytest.param("server", marks=pytest.mark.long)], indirect=True)
 def test_damage_is_found_by_readers(db, sql, statement, words):
-    made_database(db)
+    copied_database(db)
     read_study(db)
     sql(statement)
     with pytest.raises(DatabaseError) as caught:
@@ -371,7 +380,7 @@ def test_damage_is_found_by_readers(db, sql, statement, words):
 
 
 def test_damage_to_optunas_tables_is_found(db, sql):
-    made_database(db)
+    copied_database(db)
     sound = verify(db).findings
     sql("UPDATE trial_values SET value = value + 1e-9 WHERE trial_id = 1")
     (found,) = set(verify(db).findings) - set(sound)

@@ -13,7 +13,7 @@ from pareto_monoped.errors import DatabaseError, DiskError
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.store import Store
 from pareto_monoped.study.run import resume, run
-from tests.study.support import made_database, made_evaluations, made_generation, made_study
+from tests.study.support import copied_database, made_database, made_evaluations, made_generation, made_study
 
 
 def load(path, name="made"):
@@ -98,7 +98,7 @@ def test_the_state_is_json_and_nothing_is_pickled(tmp_path):
 
 def test_optuna_dashboard_reads_it(tmp_path):
     dashboard = pytest.importorskip("optuna_dashboard", reason="an optional extra")
-    made_database(tmp_path / "s.db")
+    copied_database(tmp_path / "s.db")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         application = dashboard.wsgi(f"sqlite:///{tmp_path}/s.db")
@@ -112,13 +112,20 @@ def test_optuna_dashboard_reads_it(tmp_path):
     assert detail["trials"][1]["constraints"] == pytest.approx([0.03 / 0.55])
 
 
+@pytest.fixture(scope="module")
+def simulated(tmp_path_factory):
+    """The file of a study of four jumps."""
+    path = tmp_path_factory.mktemp("simulated") / "s.db"
+    run(made_study(evaluations=4, audit=False), path, workers=1)
+    return path.read_bytes()
+
+
 @pytest.mark.parametrize("column", [b"param_name VARCHAR", b"datetime_complete DATETIME", b"objective INTEGER"])
-def test_a_refused_resume_leaves_a_file_with_a_damaged_column_of_optunas_as_it_was(tmp_path, column):
+def test_a_refused_resume_leaves_a_file_with_a_damaged_column_of_optunas_as_it_was(simulated, tmp_path, column):
     """Found by a storm of flipped bits: it had stored that it was opened before it met the column."""
     path = tmp_path / "s.db"
-    run(made_study(evaluations=4), path, workers=1)
-    damaged = path.read_bytes().replace(column, bytes([column[0] ^ 1]) + column[1:])
-    assert damaged != path.read_bytes()
+    damaged = simulated.replace(column, bytes([column[0] ^ 1]) + column[1:])
+    assert damaged != simulated
     path.write_bytes(damaged)
     with pytest.raises(DatabaseError, match="no such column"):
         resume(path, evaluations=8, workers=1)

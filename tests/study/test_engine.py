@@ -14,7 +14,7 @@ FILE = {
     "name": "s",
     "motor": "VT8020",
     "calibration": "reference",
-    "evaluations": 16,
+    "evaluations": 8,
     "seed": 3,
     "algorithm": {"name": "random"},
     "objectives": ["height_m", "energy_j"],
@@ -45,13 +45,13 @@ def test_both_engines_make_the_same_study_and_say_which_they_are(tmp_path):
 def test_a_study_keeps_its_engine(tmp_path):
     began = made(tmp_path, engine="mujoco")
     db = tmp_path / "s.db"
-    run(Study.define(**(FILE | {"evaluations": 24})), db, workers=1)
+    run(Study.define(**(FILE | {"evaluations": 12})), db, workers=1)
     assert read_study(db).calibration == began.calibration
-    assert len(read_study(db).trials) == 24
+    assert len(read_study(db).trials) == 12
     with pytest.raises(InputError, match=r"calibration\.simulation\.engine") as caught:
-        run(Study.define(**(FILE | {"evaluations": 32, "engine": "compiled"})), db, workers=1)
+        run(Study.define(**(FILE | {"evaluations": 16, "engine": "compiled"})), db, workers=1)
     assert "\n" not in str(caught.value)
-    assert len(read_study(db).trials) == 24
+    assert len(read_study(db).trials) == 12
 
 
 def test_an_engine_that_cannot_is_refused_in_one_line(tmp_path):

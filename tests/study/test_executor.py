@@ -111,7 +111,7 @@ def test_on_an_executor_of_threads(on_threads, tmp_path):
 
 def test_audits_after_the_screen_are_done_by_the_executor(tmp_path):
     """Under the paper's calibration the screen clears no design."""
-    study = study_of(name="s", evaluations=40, algorithm={"name": "nsga2", "population": 20}, calibration="paper")
+    study = study_of(name="s", evaluations=20, algorithm={"name": "nsga2", "population": 10}, calibration="paper")
     run(study, tmp_path / "threads.db", workers=2)
     with ThreadPoolExecutor(2) as pool:
         counting = Counting(pool)

@@ -46,17 +46,17 @@ class Together(ThreadPoolExecutor):
 def test_robust_keeps_the_workers_busy_over_its_chunks(tmp_path, monkeypatch):
     """One chunk after the other ended with most of many workers idle."""
     monkeypatch.setattr(robustness, "_SHARED", 1)
-    run(study_of(name="s", evaluations=40, audit=False, algorithm={"name": "random"}), tmp_path / "s.db", workers=2)
+    run(study_of(name="s", evaluations=16, audit=False, algorithm={"name": "random"}), tmp_path / "s.db", workers=2)
     trials = read_study(tmp_path / "s.db").trials.query("status == 'ok'")["trial"].tolist()[:3]
     (tmp_path / "t.db").write_bytes((tmp_path / "s.db").read_bytes())
-    done = []
+    done, settings = [], {"trials": trials, "samples": robustness.LEAST_SAMPLES}
     with Together() as pool:
         there = robust(
-            tmp_path / "t.db", load_uncertainty(), trials=trials, executor=pool, progress=lambda n, _: done.append(n)
+            tmp_path / "t.db", load_uncertainty(), executor=pool, progress=lambda n, _: done.append(n), **settings
         )
     assert done == [1, 2, 3]
     assert list(there) == trials
-    assert robust(tmp_path / "s.db", load_uncertainty(), trials=trials, workers=2) == there
+    assert robust(tmp_path / "s.db", load_uncertainty(), workers=2, **settings) == there
 
 
 def test_robust_objectives_keep_the_workers_busy_over_their_chunks(monkeypatch):

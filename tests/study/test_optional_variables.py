@@ -17,8 +17,9 @@ from pareto_monoped.storage.reader import read_study
 FREE = ("knee_release_rad", "rest_length_m", "start_height_m")
 STUDY = """
 name = "release"
-evaluations = 120
+evaluations = 40
 seed = 4
+audit = false
 
 [variables]
 knee_release_rad = { lower = 0.0, upper = 0.6 }

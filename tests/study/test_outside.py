@@ -18,7 +18,9 @@ from pareto_monoped.study.run import run
 
 @pytest.fixture(scope="module")
 def study():
-    return Study.define(name="s", evaluations=60, algorithm="random", constraints={"mass_kg": {"max": 5.0}})
+    return Study.define(
+        name="s", evaluations=24, audit=False, algorithm="random", constraints={"mass_kg": {"max": 5.0}}
+    )
 
 
 def drawn(problem, n, seed=0):

@@ -74,7 +74,7 @@ def test_the_front_is_of_the_objectives(made):
     assert data.front()["height_m.p05"].is_monotonic_increasing
 
 
-@pytest.mark.parametrize("cut", [5, 11])
+@pytest.mark.parametrize("cut", [pytest.param(5, marks=pytest.mark.long), 11])
 def test_a_run_that_was_cut_goes_on_bit_for_bit_with_other_workers(made, tmp_path, cut):
     """8 trials make a generation, so that both cuts lie within one."""
     db = tmp_path / "s.db"
@@ -85,8 +85,8 @@ def test_a_run_that_was_cut_goes_on_bit_for_bit_with_other_workers(made, tmp_pat
 
 
 def test_the_trials_are_checked_and_simulated_again(db):
-    verification = verify(db, simulate=24)
-    assert (verification.findings, verification.simulated) == ((), 24)
+    verification = verify(db, simulate=8)
+    assert (verification.findings, verification.simulated) == ((), 8)
     with sqlite3.connect(db) as connection:
         connection.execute('UPDATE monoped_trials SET "height_m.p05" = "height_m.p05" + 1e-12 WHERE trial = 3')
     connection.close()
@@ -97,7 +97,7 @@ def test_other_numbers_than_the_simulated_ones_are_found(db, monkeypatch):
     from pareto_monoped.uncertainty import samples
 
     monkeypatch.setattr(samples.RobustEvaluator, "drawn", samples.sobol_samples(load_study_ranges(db), 16, 2))
-    assert any("height_m.p05" in line for line in verify(db, simulate=24).findings)
+    assert any("height_m.p05" in line for line in verify(db, simulate=8).findings)
 
 
 def load_study_ranges(db):

@@ -1,6 +1,7 @@
 """Studies of torque profiles: what a file may say, where they begin, how they are stored, resumed and read."""
 
 import sqlite3
+from contextlib import contextmanager
 
 import numpy as np
 import pandas as pd
@@ -11,12 +12,13 @@ from pareto_monoped.definition.study import study_from_dict
 from pareto_monoped.design import ALL_NAMES, KNOT_NAMES, NAMES
 from pareto_monoped.errors import StudyError
 from pareto_monoped.storage.reader import read_study
+from pareto_monoped.study import simulator
 from pareto_monoped.study.run import run
 
 FILE = {
-    "name": "free", "rules": "iso6336", "gear_list": True, "strength": True, "audit": False, "evaluations": 60,
+    "name": "free", "rules": "iso6336", "gear_list": True, "strength": True, "audit": False, "evaluations": 30,
     "variables": {"thigh_length_m": 0.5, "push_time_s": {"lower": 0.15, "upper": 0.4}},
-    "controller": {"kind": "torque_over_time", "knots": 6}, "algorithm": {"name": "nsga2", "population": 20},
+    "controller": {"kind": "torque_over_time", "knots": 6}, "algorithm": {"name": "nsga2", "population": 12},
 }  # fmt: skip
 USED = ("push_time_s", *(f"{joint}_knot_{k}" for joint in ("hip", "knee") for k in range(1, 7)))
 
@@ -25,10 +27,19 @@ def study(**changes):
     return study_from_dict(FILE | changes, source="test")
 
 
+@contextmanager
+def short_search():
+    """Before a study begins, a quarter of the usual jumps under the virtual leg, which take seconds."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(simulator, "_BEFORE", 200)
+        yield
+
+
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     db = tmp_path_factory.mktemp("torque") / "whole.db"
-    run(study(), db, workers=1)
+    with short_search():
+        run(study(), db, workers=1)
     return db
 
 
@@ -68,15 +79,16 @@ def test_what_a_file_cannot_say_is_refused_in_one_line(changes, words):
 def test_a_study_that_was_stopped_goes_on_as_if_it_never_was(made, tmp_path):
     """Also in the middle of a generation."""
     db = tmp_path / "parts.db"
-    for count in (33, 60):
-        run(study(), db, evaluations=count, workers=1)
+    with short_search():
+        for count in (17, 30):
+            run(study(), db, evaluations=count, workers=1)
     pd.testing.assert_frame_equal(trials(db), trials(made))
 
 
 def test_it_begins_with_high_jumps(made):
     """Random profiles hardly leave the floor; those that the virtual leg tells are the jumps of a front."""
-    first = trials(made).head(20)
-    random = study(algorithm={"name": "random", "population": 20}, evaluations=20)
+    first = trials(made).head(12)
+    random = study(algorithm={"name": "random", "population": 12}, evaluations=12)
     run(random, db := made.with_name("random.db"), workers=1)
     assert first["height_m"].median() > trials(db)["height_m"].median() + 0.15
 

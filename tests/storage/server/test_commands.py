@@ -16,11 +16,12 @@ pytest.importorskip("psycopg", reason="the extra postgres is not installed")
 ROOT = Path(__file__).parents[3]
 TOML = """
 name = "s"
-evaluations = 40
+evaluations = 20
+audit = false
 strength = false
 [algorithm]
 name = "nsga2"
-population = 20
+population = 10
 """
 
 
@@ -37,15 +38,15 @@ def test_commands(cluster, tmp_path, address, capsys):
         assert "S3cret" not in told.out + told.err
         return told.out + told.err
 
-    assert f"{shown}: 40 evaluations (40 new" in done("run", tmp_path / "s.toml", "--db", address)
-    assert f"{shown}: 60 evaluations (20 new" in done("resume", address, "--evaluations", 60)
+    assert f"{shown}: 20 evaluations (20 new" in done("run", tmp_path / "s.toml", "--db", address)
+    assert f"{shown}: 30 evaluations (10 new" in done("resume", address, "--evaluations", 30)
     status = json.loads(done("status", address, "--json").partition("\nnote")[0])
-    assert (status["database"], status["evaluations"], status["state"]) == (shown, 60, "finished")
+    assert (status["database"], status["evaluations"], status["state"]) == (shown, 30, "finished")
     assert len(done("front", address).splitlines()) > 3
     trial = done("pick", address, "--knee", "--json").partition('"trial": ')[2].partition(",")[0]
     done("trials", address, "--csv", tmp_path / "t.csv")
-    assert len((tmp_path / "t.csv").read_text().splitlines()) == 61
-    assert "sound, 60 trials" in done("verify", address, "--simulate", 3)
+    assert len((tmp_path / "t.csv").read_text().splitlines()) == 31
+    assert "sound, 30 trials" in done("verify", address, "--simulate", 3)
     done("robust", address, "--trial", trial, "--samples", 256)
     done("sensitivity", address, "--trial", trial, "--samples", 32)
     done("report", address, "-o", tmp_path / "r.html")
@@ -69,8 +70,8 @@ def test_python(tmp_path, address, place):
     study = pm.Study.from_toml(_file(tmp_path))
     stored = pm.run(study, address)
     assert str(stored.path) == str(place)
-    assert len(pm.resume(address, evaluations=60).trials) == 60
-    assert len(pm.resume(stored.path, evaluations=80).trials) == 80
+    assert len(pm.resume(address, evaluations=30).trials) == 30
+    assert len(pm.resume(stored.path, evaluations=40).trials) == 40
     assert pm.load_study(address).front().equals(pm.load_study(stored.path).front())
 
 

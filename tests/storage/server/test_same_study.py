@@ -13,14 +13,14 @@ from pareto_monoped.storage.seals import ROWS
 from pareto_monoped.storage.status import status
 from pareto_monoped.study.run import resume, run
 from tests.study.same import assert_same_study
-from tests.study.support import made_database, made_evaluations, made_generation, made_study
+from tests.study.support import copied_database, made_database, made_evaluations, made_generation, made_study
 
 pytest.importorskip("psycopg", reason="the extra postgres is not installed")
 
-SMALL = {"name": "s", "evaluations": 60, "strength": False}
+SMALL = {"name": "s", "evaluations": 30, "strength": False}
 ALGORITHMS = [
-    {"name": "nsga2", "population": 20},
-    {"name": "surrogate", "population": 20, "drawn_generations": 1},
+    {"name": "nsga2", "population": 10},
+    {"name": "surrogate", "population": 10, "drawn_generations": 1},
     {"name": "weighted_cmaes", "height_weights": [0.3, 0.7], "iterations": 3},
 ]
 
@@ -50,8 +50,8 @@ OTHERS = [pytest.param(one, marks=pytest.mark.long) for one in ALGORITHMS[1:3]] 
 def test_same_study(tmp_path, place, algorithm):
     study = study_from_dict(SMALL | {"algorithm": algorithm}, source="test")
     for db in (tmp_path / "s.db", place):
-        run(study, db, evaluations=30)
-        resume(db, evaluations=60)
+        run(study, db, evaluations=15)
+        resume(db, evaluations=30)
     assert_same_study(tmp_path / "s.db", place)
     require_sound(place, verify(place, simulate=5))
     assert read_front(place).rows.equals(read_front(tmp_path / "s.db").rows)
@@ -74,7 +74,7 @@ def test_minus_zero_and_nan_come_back_as_from_a_file(tmp_path, place):
 
 
 def test_a_rule_of_a_stranger_never_runs(cluster, place):
-    made_database(place)
+    copied_database(place)
     cluster.sql(f"CREATE RULE r AS ON INSERT TO {place.schema}.monoped_trials DO INSTEAD NOTHING")
     with pytest.raises(DatabaseError, match="holds the view or trigger 'r'"):
         read_study(place)
@@ -89,9 +89,9 @@ def test_nothing_of_a_study_on_a_server_stands_in_a_file(tmp_path, place, monkey
 
 def test_run_names_the_schema_after_the_study(cluster):
     study = study_from_dict(SMALL | {"name": "Named So", "algorithm": ALGORITHMS[0], "audit": False}, source="test")
-    summary = run(study, place_of(cluster.address()), evaluations=20)
+    summary = run(study, place_of(cluster.address()), evaluations=10)
     assert summary.db.schema == "named_so"
-    assert len(read_study(summary.db).trials) == 20
+    assert len(read_study(summary.db).trials) == 10
 
 
 def test_settings_of_a_user_change_no_number(cluster, tmp_path, place):
