@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from pareto_monoped.cli.options import Where, executor_at
 from pareto_monoped.compute.cluster import DaskWorkers, threads_of
 from pareto_monoped.compute.crew import Crew, Limits
 from pareto_monoped.errors import InputError, WorkerError
@@ -65,24 +66,34 @@ def shared(tmp_path_factory):
         yield dask
 
 
-def test_a_worker_is_killed_and_another_joins(two):
-    with crew(two.address) as (made, told):
+def test_a_worker_is_killed_and_another_joins(shared):
+    """The other takes its place among the workers for all tests."""
+    with crew(shared.address) as (made, told):
         futures = [made.submit(tasks.short, n) for n in range(40)]
         until(lambda: sum(future.done() for future in futures) > 10)
         told.clear()  # the workers may have been slow to start
-        two.workers[0].kill()
-        two.workers.append(two.add())
+        shared.workers[0].kill()
+        shared.workers[0].wait()
+        shared.workers[0] = shared.add()
 
         def the_other_is_at_work():
             done = [future for future in futures if future.done()]
             futures.extend(made.submit(tasks.short, n) for n in range(len(futures), len(done) + 4))
-            return two.workers[2].pid in {future.result()[1] for future in done}
+            return shared.workers[0].pid in {future.result()[1] for future in done}
 
         until(the_other_is_at_work)
         assert numbers(futures) == list(range(len(futures)))
     assert len(told) == 1
     assert told[0].startswith("worker tcp://127.0.0.1:")
     assert told[0].endswith("has gone; its work goes elsewhere")
+
+
+def test_the_option_of_commands_leads_to_the_scheduler_of_its_address(shared):
+    limits = Limits(absent_s=7.0)
+    with executor_at(Where(scheduler=shared.address), limits=limits) as made:
+        assert made._staff.label == f"scheduler {shared.address}"
+        assert made._limits is limits
+        until(lambda: len(made._staff.present()) == 2)
 
 
 def test_no_scheduler_at_the_address(monkeypatch):
