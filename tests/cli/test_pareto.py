@@ -34,7 +34,7 @@ WORDS = [sys.executable, "-m", "pareto_monoped", "pareto", "studies/quick.toml",
 
 
 def pareto(folder: Path) -> subprocess.CompletedProcess:
-    """The main job in this process, whose kernel has made most parts before; of all formats, STEP alone is looked at."""
+    """The main job in this process, whose kernel has made most parts before; of CAD it makes what is looked at."""
     out, err = io.StringIO(), io.StringIO()
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
         patch.chdir(folder)
