@@ -55,8 +55,8 @@ def test_robust_takes_an_executor_and_a_robust_pick_is_that_of_the_command(store
 
 def test_sensitivity_is_that_of_the_command(stored, capsys):
     knee = stored.pick("knee")
-    found = pm.sensitivity(stored, knee, samples=8)
-    said = printed(capsys, "sensitivity", stored.path, "--trial", knee.trial, "--samples", 8)
+    found = pm.sensitivity(stored, knee, samples=32)
+    said = printed(capsys, "sensitivity", stored.path, "--trial", knee.trial, "--samples", 32)
     for about in ("variables", "assumptions"):
         rows = found[found["about"] == about]
         assert rows["name"].tolist() == [one["factor"]["name"] for one in said[about]["factors"]]
