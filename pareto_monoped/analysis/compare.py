@@ -180,13 +180,16 @@ class _Machine:
         whole = np.minimum(np.floor(periods), MOST_DELAY - 2)
         late = whole + np.arange(3.0)[:, None]
         ends = [np.column_stack([parameters[:, :2], one * self.period_s, parameters[:, 3]]) for one in late]
-        jumps = self._population(np.concatenate(ends))
+        # A delay that is varied by a period meets those of the others: no jump is made twice.
+        different, place = np.unique(np.concatenate(ends), axis=0, return_inverse=True)
+        jumps = self._population(different)
         # Edges move by three periods at most.
         steps = int(times[-1] / self.step_s) + 3 + 3 * round(self.period_s / self.step_s)
         jumps.records["step_limit"] = steps
-        trace = np.full((len(late.ravel()), steps, len(_OBSERVED)), np.nan)
+        trace = np.full((len(different), steps, len(_OBSERVED)), np.nan)
         for one, seen in zip(trace, jumps.observed(), strict=True):
             one[: len(seen)] = seen[:steps, _OBSERVED]
+        trace = trace[place.ravel()]
         constants = self.robots.ratio[0] * self.robots.torque_constant_n_m_per_a[0]
         # The drives take their current from the nominal constant.
         trace[:, :, 3:] /= constants * np.tile(parameters[:, 1], 3)[:, None, None]

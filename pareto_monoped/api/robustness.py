@@ -133,7 +133,7 @@ def sensitivity(
     Example:
         >>> import pareto_monoped as pm
         >>> stored = pm.load_study("light.db")
-        >>> found = pm.sensitivity(stored, stored.pick(min_height_m=0.7), samples=64)
+        >>> found = pm.sensitivity(stored, stored.pick(min_height_m=0.7), samples=32)
         >>> sorted(set(found.about)), bool((found["height_m.total"] >= 0).any())
         (['assumptions', 'variables'], True)
     """
@@ -274,7 +274,7 @@ def limit(
 
     Example:
         >>> import pareto_monoped as pm
-        >>> found = pm.limit("light.db", pm.load_study("light.db").pick("knee"), jumps=40)
+        >>> found = pm.limit("light.db", pm.load_study("light.db").pick("knee"), jumps=20)
         >>> bool((found["controller_gap"] >= 0).all())
         True
     """

@@ -147,12 +147,12 @@ def run(
     Example:
         >>> import tempfile, pareto_monoped as pm
         >>> folder = tempfile.TemporaryDirectory()
-        >>> study = pm.Study.define(name="small", evaluations=200)
+        >>> study = pm.Study.define(name="small", evaluations=100)
         >>> def lean(jumps):  # holds at <= 0
         ...     return jumps["mass_kg"] - 10.0 * jumps["thigh_length_m"]
         >>> stored = pm.run(study, folder.name + "/small.db", constraints=[{"mass_kg": {"max": 5.0}}, lean])
         >>> len(stored.trials), bool((stored.front().own_lean <= 0).all())
-        (200, True)
+        (100, True)
         >>> folder.cleanup()
     """
     from pareto_monoped.study.run import run as run_study

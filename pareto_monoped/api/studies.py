@@ -226,7 +226,8 @@ class StoredStudy:
         Raises:
             SelectionError: no trial has this number.
         """
-        return Design(**{name: row[name] for name in ALL_NAMES if name in (row := self._row(trial))})
+        row = self._row(trial)
+        return Design(**{name: row[name] for name in ALL_NAMES if name in row})
 
     def motors(self, trial: int) -> tuple[str, str]:
         """Return names of the motors of a trial's hip and knee, for ``simulate`` and ``build_robot``.

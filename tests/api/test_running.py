@@ -7,7 +7,7 @@ import pytest
 import pareto_monoped as pm
 from pareto_monoped.cli import _run as cli
 
-FILE = 'name = "small"\nevaluations = 160\nseed = 5\naudit = false\n[algorithm]\nname = "nsga2"\npopulation = 20\n'
+FILE = 'name = "small"\nevaluations = 80\nseed = 5\naudit = false\n[algorithm]\nname = "nsga2"\npopulation = 20\n'
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def test_a_run_makes_the_trials_of_the_command_line(file, tmp_path):
 
 def test_a_study_from_python_is_that_of_its_file(file):
     algorithm = {"name": "nsga2", "population": 20}
-    study = pm.Study.define(name="small", evaluations=160, seed=5, audit=False, algorithm=algorithm)
+    study = pm.Study.define(name="small", evaluations=80, seed=5, audit=False, algorithm=algorithm)
     assert study == pm.Study.from_toml(file) == pm.Study.from_toml(str(file), seed=5)
     assert pm.Study.from_toml(file, algorithm="random").algorithm.name == "random"
 
@@ -48,7 +48,7 @@ def test_a_callback_that_returns_true_stops_the_run_and_resume_ends_it(file, tmp
 
     stopped = pm.run(file, tmp_path / "stopped.db", callback=first_two)
     assert seen[:2] == [20, 40]
-    assert len(stopped.trials) < 160
+    assert len(stopped.trials) < 80
     assert not stopped.finished
     assert pm.resume(stopped.path, callback=seen.append).finished
     pm.run(file)

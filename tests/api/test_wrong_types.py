@@ -48,6 +48,8 @@ def made(tmp_path_factory):
     tiny = {"name": "tiny", "evaluations": 4, "algorithm": "random", "audit": False}
     study, design = pm.Study.define(**tiny), pm.PAPER_CASES["C"].design
     pm.run(study, folder / "tiny.db")
+    for trials in (0, None):
+        pm.robust(folder / "tiny.db", trials)  # by default: what is stored is not simulated again
     (folder / "full").mkdir()
     (folder / "full" / "other.txt").touch()
     (folder / "grid.toml").write_text(

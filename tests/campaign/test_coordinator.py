@@ -31,7 +31,7 @@ def states(all_of_them):
 def test_equal_to_studies_run_alone_also_with_other_shares_and_after_being_stopped(tmp_path, monkeypatch):
     """Two studies have a thread each; the longer one gets both once it is alone, however little time is left."""
     monkeypatch.setattr(coordinator, "WORTH_S", 0.0)
-    several = standings(tmp_path, "evaluations = [20, 240]")
+    several = standings(tmp_path, "evaluations = [20, 240]", SMALL.replace("audit", "strength = false\naudit"))
     seen = []
     assert run_campaign(
         several, cores=2, changed=lambda one: seen.append((one.name, one.threads)), notify=lambda _: None

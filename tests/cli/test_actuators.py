@@ -233,7 +233,13 @@ def test_bushes_beyond_their_pv_limit_are_named(capsys):
     assert words not in " ".join(run(capsys, "--ratio", "6.0")[1].out.split())
 
 
-@pytest.mark.parametrize(("kind", "head"), [("svg", b"<?xml"), ("png", b"\x89PNG"), ("pdf", b"%PDF")])
+@pytest.mark.parametrize(
+    ("kind", "head"),
+    [
+        ("svg", b"<?xml"),
+        *(pytest.param(*one, marks=pytest.mark.long) for one in (("png", b"\x89PNG"), ("pdf", b"%PDF"))),
+    ],
+)
 def test_the_map_as_a_figure(capsys, tmp_path, kind, head):
     path = tmp_path / f"map.{kind}"
     code, _ = run(capsys, "--figure", str(path), "--json")

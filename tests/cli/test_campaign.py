@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import pytest
@@ -17,7 +18,7 @@ from pareto_monoped.campaign.folder import places_of
 from pareto_monoped.campaign.grid import load_campaign
 from pareto_monoped.cli import _run as run
 from pareto_monoped.cli import cli
-from pareto_monoped.cli.campaign import _rows, clock, shortened
+from pareto_monoped.cli.campaign import _rows, clock, reports, shortened
 from pareto_monoped.storage.reader import read_study
 from tests.campaign.test_coordinator import SMALL
 from tests.campaign.test_grid import written
@@ -27,9 +28,13 @@ AXES = 'motors = ["VT8020", "Nope.toml"]\nseeds = [1, 2]'
 
 
 def command(folder, *words):
-    line = [sys.executable, "-m", "pareto_monoped", "campaign", "grid.toml", *words]
-    environment = os.environ | {"PYTHONPATH": str(ROOT), "COLUMNS": "80"}
-    return subprocess.run(line, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    """The command in this process; its studies run in one of their own."""
+    out, err = io.StringIO(), io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
+        patch.chdir(folder)
+        patch.setenv("COLUMNS", "80")
+        code = run(["campaign", "grid.toml", *words])
+    return subprocess.CompletedProcess(words, code, out.getvalue(), err.getvalue())
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +42,7 @@ def done(tmp_path_factory):
     """A campaign of two studies that can be run and two that cannot, and what it printed in a pipe."""
     folder = tmp_path_factory.mktemp("campaign")
     written(folder, AXES, SMALL.replace("evaluations = 40", "evaluations = 20\nstrength = false"))
-    return folder, command(folder, "--workers", "2", "--csv", "table.csv", "--report", "page.html")
+    return folder, command(folder, "--workers", "1", "--csv", "table.csv", "--report", "page.html")
 
 
 def test_a_failing_study_is_told_in_one_line_and_by_the_exit_code(done):
@@ -118,6 +123,21 @@ def test_the_table_at_the_end_says_the_time_that_is_stored(done):
     assert len(times[0]) == 2
 
 
+def test_as_json_a_generation_and_an_end_are_lines_of_their_own(many, capsys):
+    with reports(many, as_json=True) as (changed, notify):
+        for state, evaluations in (("running", 10), ("finished", 20), ("failed", 0)):
+            many[0].state, many[0].evaluations = state, evaluations
+            changed(many[0])
+        notify("a line")
+    said = capsys.readouterr()
+    events = [json.loads(line) for line in said.out.splitlines()]
+    assert [event["event"] for event in events] == ["generation", "study", "study"]
+    assert [event["evaluations"] for event in events] == [10, 20, 0]
+    assert {event["study"] for event in events} == {many[0].name}
+    assert said.err == "a line\n"
+
+
+@pytest.mark.long
 def test_json_is_a_line_per_generation_and_per_study(tmp_path, capsys):
     written(tmp_path, "seeds = [1]", SMALL.replace("40", "20"))
     assert run(["campaign", str(tmp_path / "grid.toml"), "--json", "--folder", str(tmp_path / "other")]) == 0

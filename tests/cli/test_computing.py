@@ -13,7 +13,7 @@ from pareto_monoped.compute.crew import Crew, Limits
 from pareto_monoped.compute.processes import LocalProcesses
 from tests.cli.support import STORED
 from tests.compute import tasks
-from tests.compute.dask_here import ROOT, DaskHere, until
+from tests.compute.dask_here import ROOT, DaskHere
 
 STUDY = 'name = "s"\nevaluations = 20\naudit = false\nalgorithm = { name = "nsga2", population = 10 }\n'
 
@@ -67,15 +67,6 @@ def test_processes_are_as_many_as_asked_for_and_losses_are_told_on_standard_erro
     assert captured.err.startswith("process 1 ")
     with pytest.raises(RuntimeError):
         crew.submit(tasks.short, 3)
-
-
-def test_a_scheduler_is_that_of_the_address(tmp_path):
-    pytest.importorskip("distributed")
-    limits = Limits(absent_s=7.0)
-    with DaskHere(tmp_path) as dask, executor_at(Where(scheduler=dask.address), limits=limits) as crew:
-        assert crew._staff.label == f"scheduler {dask.address}"
-        assert crew._limits is limits
-        until(lambda: crew._staff.state() == "has no worker")
 
 
 @pytest.mark.long

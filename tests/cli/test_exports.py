@@ -44,9 +44,13 @@ def test_bad_requests_are_one_line_and_write_nothing(capsys, tmp_path, monkeypat
 
 
 @pytest.mark.usefixtures("unchecked")
-def test_why_a_design_was_picked_is_said_in_lines_that_fit_a_terminal(capsys, tmp_path):
-    code, _, err = run(capsys, "export", STORED, "--knee", "--formats", "dxf", "-o", tmp_path / "knee")
+def test_why_a_design_was_picked_is_said_in_lines_that_fit_a_terminal_and_drawings_can_be_left_out(capsys, tmp_path):
+    folder = tmp_path / "knee"
+    words = ("export", STORED, "--knee", "--formats", "dxf,pdf", "--no-drawings")
+    code, _, err = run(capsys, *words, "-o", folder)
     assert code == 0
+    assert json.loads((folder / "design.json").read_text())["formats"] == ["dxf"]
+    assert not (folder / "drawings").exists()
     assert re.search(r"\ntrial 64 .*\n  ", err)  # in more than one line, and no line is too long
     assert max(len(line) for line in err.splitlines() if str(tmp_path) not in line) <= 80
 
@@ -156,15 +160,6 @@ def test_a_front_is_exported_in_parallel_stopped_and_continued(tmp_path):
     assert again.stdout == f"{expected - len(made)} made, {len(made)} already there\n"
     assert len(list(folder.iterdir())) == expected
     assert {name: (folder / name / "design.json").stat().st_mtime_ns for name in before} == before
-
-
-@pytest.mark.usefixtures("unchecked")
-def test_drawings_can_be_left_out(capsys, tmp_path):
-    folder = tmp_path / "case"
-    code, _, _ = run(capsys, "export", "--case", "C", "--formats", "dxf,pdf", "--no-drawings", "-o", folder)
-    assert code == 0
-    assert json.loads((folder / "design.json").read_text())["formats"] == ["dxf"]
-    assert not (folder / "drawings").exists()
 
 
 def test_angles_of_a_pose_are_given_in_degrees():

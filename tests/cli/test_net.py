@@ -62,7 +62,13 @@ def test_a_fault_says_where_it_came_up(monkeypatch, capsys):
 
 
 @pytest.mark.parametrize(
-    "words", [["--help"], ["actuators", "--ratio", "6"], ["status", "{db}"], ["status", "{db}", "--json"]]
+    "words",
+    [
+        ["--help"],
+        ["status", "{db}", "--json"],
+        pytest.param(["status", "{db}"], marks=pytest.mark.long),
+        pytest.param(["actuators", "--ratio", "6"], marks=pytest.mark.long),
+    ],
 )
 def test_a_full_disk_behind_standard_output_ends_in_one_line(tmp_path, words):
     code, _, err = own_process(tmp_path, words, stdout="/dev/full")
@@ -70,7 +76,7 @@ def test_a_full_disk_behind_standard_output_ends_in_one_line(tmp_path, words):
     assert err == "error: output: cannot be written (No space left on device); make room and try again\n"
 
 
-@pytest.mark.parametrize("closed", [(1,), (2,), (0, 1, 2)])
+@pytest.mark.parametrize("closed", [*(pytest.param(one, marks=pytest.mark.long) for one in ((1,), (2,))), (0, 1, 2)])
 def test_closed_standard_streams_take_nothing_into_a_study(tmp_path, capsys, closed):
     code, _, _ = own_process(tmp_path, ["status", "{db}"], closed=closed)
     assert code == 0

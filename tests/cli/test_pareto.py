@@ -30,15 +30,16 @@ from pareto_monoped.storage.reader import read_study
 from tests.compute.dask_here import until
 
 ROOT = Path(__file__).parents[2]
-WORDS = [sys.executable, "-m", "pareto_monoped", "pareto", "studies/quick.toml", "--evaluations", "160"]
+WORDS = [sys.executable, "-m", "pareto_monoped", "pareto", "studies/quick.toml", "--evaluations", "100"]
 
 
 def pareto(folder: Path) -> subprocess.CompletedProcess:
-    """The main job in this process, whose kernel has made most parts before."""
+    """The main job in this process, whose kernel has made most parts before; of CAD it makes what is looked at."""
     out, err = io.StringIO(), io.StringIO()
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
         patch.chdir(folder)
         patch.setenv("COLUMNS", "80")
+        patch.setattr("pareto_monoped.cad.write.folder.FORMATS", ("step",))
         code = cli(WORDS[3:])
     return subprocess.CompletedProcess(WORDS, code, out.getvalue(), err.getvalue())
 
@@ -82,7 +83,7 @@ class TestMainJob:
         first, second = (read_study(folder / "studies" / f"quick{word}.db") for word in ("", "_battery"))
         assert second.study.objectives.names == ("height_m", "electrical_energy_j")
         assert two_fronts([first, second]) is not None
-        assert len(second.trials) == 160
+        assert len(second.trials) == 100
 
     def test_the_closing_table_is_what_both_fronts_offer(self, job):
         folder, done = job
@@ -128,7 +129,7 @@ class TestMainJob:
         """By hand: dear is what takes more than 1.5 times the least from the battery that reaches its height."""
         folder, _ = job
         data = read_study(folder / "studies" / "quick.db")
-        assert len(data.trials) == 160
+        assert len(data.trials) == 100
         front, trials = data.front(), data.sound
         least = [trials.loc[trials["height_m"] >= h, "electrical_energy_j"].min() for h in front["height_m"]]
         thrifty = front[front["electrical_energy_j"].to_numpy() <= 1.5 * np.array(least)]
@@ -157,7 +158,7 @@ class TestMainJob:
         assert again.stdout == first.stdout
         after = {path: path.stat().st_mtime_ns for path in before}
         changed = {path.name for path in before if before[path] != after[path]}
-        assert len(read_study(folder / "studies" / "quick_battery.db").trials) == 160
+        assert len(read_study(folder / "studies" / "quick_battery.db").trials) == 100
         assert changed <= {"actuators.csv"}
 
     @pytest.mark.long
@@ -219,7 +220,7 @@ def test_a_study_of_other_objectives_has_one_front(tmp_path):
 
 
 def test_a_missing_study_is_one_line(tmp_path):
-    done = subprocess.run(WORDS, cwd=tmp_path, capture_output=True, text=True, check=False)
+    done = pareto(tmp_path)
     assert done.returncode == 2
     assert len(done.stderr.strip().splitlines()) == 1
     assert "studies/quick.toml" in done.stderr

@@ -4,12 +4,12 @@ import pytest
 from click.testing import CliRunner
 
 from pareto_monoped.cli.stored import report
-from tests.report.conftest import db, folder  # noqa: F401
+from tests.cli.support import STORED
 
 
-def test_report_writes_one_page_and_figures(db, tmp_path):  # noqa: F811
+def test_report_writes_one_page_and_figures(tmp_path):
     result = CliRunner().invoke(
-        report, [str(db), "-o", str(tmp_path / "r.html"), "--figures", str(tmp_path / "figures")]
+        report, [str(STORED), "-o", str(tmp_path / "r.html"), "--figures", str(tmp_path / "figures")]
     )
     assert result.exit_code == 0, result.output
     assert result.stdout == ""
@@ -24,8 +24,8 @@ def test_report_without_a_database_or_an_output_is_a_usage_error(arguments):
 
 
 @pytest.mark.long
-def test_figures_alone_write_no_page(db, tmp_path):  # noqa: F811
-    result = CliRunner().invoke(report, [str(db), "--figures", str(tmp_path / "figures")])
+def test_figures_alone_write_no_page(tmp_path):
+    result = CliRunner().invoke(report, [str(STORED), "--figures", str(tmp_path / "figures")])
     assert result.exit_code == 0, result.output
     assert "front.svg" in result.stderr
     assert list(tmp_path.glob("*.html")) == []

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from pareto_monoped.cli.options import Where, executor_at
 from pareto_monoped.compute.cluster import DaskWorkers, threads_of
 from pareto_monoped.compute.crew import Crew, Limits
 from pareto_monoped.errors import InputError, WorkerError
@@ -57,26 +58,43 @@ def two(tmp_path):
 
 
 @pytest.fixture(scope="module")
-def shared(tmp_path_factory):
-    """A scheduler with workers of one thread and of two, for tests that leave them as they are."""
+def scheduler(tmp_path_factory):
+    """A scheduler, to which ``shared`` adds workers."""
     with DaskHere(tmp_path_factory.mktemp("shared")) as dask:
-        dask.workers += [dask.add(), dask.add(threads=2)]
-        until(lambda: threads_of(dask.address) == 3)
         yield dask
 
 
-def test_a_worker_is_killed_and_another_joins(two):
-    with crew(two.address) as (made, told):
+@pytest.fixture(scope="module")
+def shared(scheduler):
+    """That scheduler with workers of one thread and of two, for tests that leave them as they are."""
+    scheduler.workers += [scheduler.add(), scheduler.add(threads=2)]
+    until(lambda: threads_of(scheduler.address) == 3)
+    return scheduler
+
+
+def test_the_option_of_commands_leads_to_the_scheduler_of_its_address(scheduler):
+    """The first test, as long as there are no workers, which would be asked for jumps."""
+    limits = Limits(absent_s=7.0)
+    with executor_at(Where(scheduler=scheduler.address), limits=limits) as made:
+        assert made._staff.label == f"scheduler {scheduler.address}"
+        assert made._limits is limits
+        until(lambda: made._staff.state() == "has no worker")
+
+
+def test_a_worker_is_killed_and_another_joins(shared):
+    """The other takes its place among the workers for all tests."""
+    with crew(shared.address) as (made, told):
         futures = [made.submit(tasks.short, n) for n in range(40)]
         until(lambda: sum(future.done() for future in futures) > 10)
         told.clear()  # the workers may have been slow to start
-        two.workers[0].kill()
-        two.workers.append(two.add())
+        shared.workers[0].kill()
+        shared.workers[0].wait()
+        shared.workers[0] = shared.add()
 
         def the_other_is_at_work():
             done = [future for future in futures if future.done()]
             futures.extend(made.submit(tasks.short, n) for n in range(len(futures), len(done) + 4))
-            return two.workers[2].pid in {future.result()[1] for future in done}
+            return shared.workers[0].pid in {future.result()[1] for future in done}
 
         until(the_other_is_at_work)
         assert numbers(futures) == list(range(len(futures)))
