@@ -103,7 +103,7 @@ def test_searching_choosing_and_reporting_need_no_cad(tmp_path, figures):
     pm.plot_front(stored)
     assert _run(["report", "s.db", "-o", "s.html", *{figures}]) == 0
     assert _run(["simulate", "--case", "C", "--model", "c.xml"]) == 0
-    assert _run(["robust", "s.db", "--trial", str(knee), "--samples", "64"]) == 0
+    assert _run(["robust", "s.db", "--trial", str(knee), "--samples", "256"]) == 0
     """
     run = without_extras(code, tmp_path)
     assert run.returncode == 0, run.stderr

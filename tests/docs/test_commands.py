@@ -73,7 +73,8 @@ def searches() -> dict[str, tuple[Path, str]]:
 
 LESS = {
     "export": ("--formats", "dxf"),  # its files and its checks are those that other tests look at; here are its parts
-    "run studies/quick.toml": ("--evaluations", "200"),  # a quarter: of a search, only words are compared
+    "run studies/quick.toml": ("--evaluations", "300"),  # of a search, only words are compared
+    "robust": ("--every", "20"),  # of a front that has a quarter of the designs
     "run studies/robust.toml": ("--evaluations", "10"),
     "run studies/case_c.toml": ("--evaluations", "120"),
     "simulate --case C --gif": ("--slower", "1"),  # a sixth of the pictures

@@ -24,7 +24,6 @@ FEWER = {
     "own_algorithm": {"evaluations=120": "evaluations=60", "evaluations=200": "evaluations=100"},
     "own_calibration": {"evaluations=120": "evaluations=40", "evaluations=160": "evaluations=60"},
     "own_goals": {"evaluations=160": "evaluations=60", "evaluations=240": "evaluations=90"},
-    "own_motor": {'"U8"': '"MAD_M6C12"'},  # of one family: half the gearboxes to search
     "own_sampler": {"n_trials=100": "n_trials=10"},
     "export_a_pick": {"evaluations=400": "evaluations=120"},
 }
