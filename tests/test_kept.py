@@ -42,7 +42,7 @@ def fingerprint(maps):
 
 
 # The same map at either joint, in other legs, and under other rules.
-for hip, knee, rules in (("M", "M", "iso6336"), ("M", "M", "paper"), ("M", "N", "paper")):
+for hip, knee, rules in (("M", "M", "iso6336"), ("M", "M", "paper"), ("N", "M", "paper")):
     maps = [map_for({"M": "MAD_M6C12", "N": "MN8014"}[name], rules) for name in (hip, knee)]
     said = fingerprint(maps)
     print(said)

@@ -19,8 +19,6 @@ from pareto_monoped.storage.reader import read_study
 from pareto_monoped.uncertainty.settings import load_uncertainty
 from tests.report.conftest import grown, made, unpacked
 
-SAMPLES = 64
-"""Of each design that is tested as built."""
 ASSETS = resources.files("pareto_monoped") / "report" / "assets"
 
 
@@ -28,8 +26,7 @@ ASSETS = resources.files("pareto_monoped") / "report" / "assets"
 def stored(folder):
     """A study of its own: the database of the others stays as it is."""
     db = made(folder, seed=11, evaluations=60)
-    few = replace(load_uncertainty(), samples=SAMPLES)
-    robust(db, few, trials=read_study(db).front()["trial"].tolist()[:4], workers=2)
+    robust(db, load_uncertainty(), trials=read_study(db).front()["trial"].tolist()[:3], workers=2)
     return read_robustness(db)
 
 
@@ -39,7 +36,7 @@ def searched(folder, stored):
     db = folder / "surrogate_11_60.db"
     with pytest.MonkeyPatch.context() as patch:  # few robots as built, of which the page tells nothing
         patch.setattr(limit, "sampling", lambda *_: (load_uncertainty(), 16, 1))
-        limit.limits(db, read_study(db).front().iloc[:4], jumps=40, workers=2)
+        limit.limits(db, read_study(db).front().iloc[:3], jumps=40, workers=2)
     return read_limits(db)
 
 
@@ -57,7 +54,7 @@ def shown(uncertain):
 def test_the_page_has_what_is_stored(shown, uncertain, stored):
     card = shown.studies[0]
     assert [card.trials.trial[row] for row in card.robust.rows] == sorted(stored)
-    assert (card.robust.ranges, card.robust.samples, card.robust.others) == ("default", SAMPLES, 0)
+    assert (card.robust.ranges, card.robust.samples, card.robust.others) == ("default", 256, 0)
     known = [stored[trial].result for trial in sorted(stored)]
     for name in ("height_m.p05", "energy_j.p95", "mass_kg.mean"):
         base, _, statistic = name.partition(".")
@@ -133,7 +130,7 @@ def test_studies_with_other_objectives_share_a_page(uncertain, source):
 def test_the_page_has_the_stored_sensitivities(data, resimulation, folder):
     db = folder / "surrogate_11_60.db"
     trial = int(read_study(db).front()["trial"].iloc[0])
-    found = sensitivity(db, trial, load_uncertainty(), blocks=16, workers=2)
+    found = sensitivity(db, trial, load_uncertainty(), blocks=32, workers=2)
     own = Source(data=read_study(db), resimulation=resimulation, models={}, sensitivities=read_sensitivity(db))
     card = build([own]).studies[0]
     assert list(card.sensitivity) == [str(trial)]
@@ -191,7 +188,7 @@ def test_the_page_tells_numerical_and_physical_tests_apart(shown, stored, search
             known = stored[trial].result
             low, high = (getattr(known.measures["height_m"], end) for end in ("p05", "p95"))
             tab.expects(
-                "#audit", f"Tested as built in {SAMPLES} jumps, nine of ten robots: height {low:.3f} m to {high:.3f} m"
+                "#audit", f"Tested as built in 256 jumps, nine of ten robots: height {low:.3f} m to {high:.3f} m"
             )
             tab.expects("#audit", f"{100 * known.failed:.1f} % of the jumps fail")
             tab.expects("#audit", f"{100 * known.overloaded:.1f} % overload a part")
