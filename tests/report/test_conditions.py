@@ -276,7 +276,9 @@ def files(studies, tmp_path_factory, pytestconfig):
     return found
 
 
-@SETS
+@pytest.mark.parametrize(
+    "sets", [30, pytest.param(500, marks=pytest.mark.long)]
+)  # a page costs more than its questions
 @pytest.mark.browser
 def test_the_page_answers_as_brute_force_over_all_trials_shown(files, records, studies, open_tab, sets):
     rng, refused, ways = random.Random(10), 0, ["", "", "knee", "compromise", "least", "most"]

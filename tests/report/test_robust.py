@@ -26,7 +26,7 @@ ASSETS = resources.files("pareto_monoped") / "report" / "assets"
 def stored(folder):
     """A study of its own: the database of the others stays as it is."""
     db = made(folder, seed=11, evaluations=60)
-    robust(db, load_uncertainty(), trials=read_study(db).front()["trial"].tolist()[:3], workers=2)
+    robust(db, load_uncertainty(), trials=read_study(db).front()["trial"].tolist()[:4], workers=2)
     return read_robustness(db)
 
 
@@ -36,7 +36,7 @@ def searched(folder, stored):
     db = folder / "surrogate_11_60.db"
     with pytest.MonkeyPatch.context() as patch:  # few robots as built, of which the page tells nothing
         patch.setattr(limit, "sampling", lambda *_: (load_uncertainty(), 16, 1))
-        limit.limits(db, read_study(db).front().iloc[:3], jumps=40, workers=2)
+        limit.limits(db, read_study(db).front().iloc[:4], jumps=60, workers=2)
     return read_limits(db)
 
 
