@@ -77,9 +77,10 @@ LESS = {
     "robust": ("--every", "20"),  # of a front that has a quarter of the designs
     "run studies/robust.toml": ("--evaluations", "10"),
     "run studies/case_c.toml": ("--evaluations", "120"),
-    "simulate --case C --gif": ("--slower", "1"),  # a sixth of the pictures
 }
 """Beginnings of commands that are run with further words, since they take long as they are shown."""
+ELSEWHERE = {"pareto-monoped simulate --case C --gif jump.gif"}
+"""Commands that long tests run here, as most of their time is the robot's meshes: tests/cli/test_watching.py has them."""
 LONG = {"studies.md"}
 """Pages whose commands take as long as those of all others: a campaign over motors, with its report."""
 
@@ -94,7 +95,7 @@ LONG = {"studies.md"}
     ],
 )
 def test_commands_of_the_page_run_and_print_what_it_shows(
-    page, tmp_path, monkeypatch, capsys, tmp_path_factory, searches
+    page, tmp_path, monkeypatch, capsys, tmp_path_factory, searches, pytestconfig
 ):
     shutil.copytree(ROOT / "studies", tmp_path / "studies", ignore=shutil.ignore_patterns("*.db*"))
     (tmp_path / "reports").mkdir()
@@ -107,6 +108,8 @@ def test_commands_of_the_page_run_and_print_what_it_shows(
             subprocess.run(["make", "-n", *words], cwd=ROOT, check=True, capture_output=True)
             continue
         assert program == "pareto-monoped"
+        if command in ELSEWHERE and pytestconfig.getoption("markexpr") == "not long":
+            continue
         if place == 0 and command in searches:
             folder, printed = searches[command]
             shutil.copytree(folder, "studies", dirs_exist_ok=True)
