@@ -80,7 +80,7 @@ LESS = {
 }
 """Beginnings of commands that are run with further words, since they take long as they are shown."""
 ELSEWHERE = {"pareto-monoped simulate --case C --gif jump.gif"}
-"""Commands that long tests run here, as most of their time is the robot's meshes: tests/cli/test_watching.py has them."""
+"""Commands that only long tests run here, as they mesh a robot: tests/cli/test_watching.py has them."""
 LONG = {"studies.md"}
 """Pages whose commands take as long as those of all others: a campaign over motors, with its report."""
 
