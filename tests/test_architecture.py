@@ -67,6 +67,12 @@ def parsed(path: Path) -> ast.Module:
     return ast.parse(path.read_text(encoding="utf-8"))
 
 
+@cache
+def nodes(tree: ast.Module) -> list[ast.AST]:
+    """All of a tree, looked through once for all rules."""
+    return list(ast.walk(tree))
+
+
 def module_of(path: Path) -> str:
     return ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__")
 
@@ -74,10 +80,11 @@ def module_of(path: Path) -> str:
 MODULES = {module_of(path) for path in INSIDE}
 
 
+@cache
 def imported(tree: ast.Module) -> set[str]:
     """What is imported anywhere, also inside functions and for type checking; modules of the package in full."""
     found = set()
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         if isinstance(node, ast.ImportFrom) and node.module:
             # A name that is imported from a package may be a module itself.
             names = [f"{node.module}.{alias.name}" for alias in node.names]
@@ -237,7 +244,7 @@ def heavy_outside(path: Path, tree: ast.Module) -> list[str]:
     Other rooms may need a version number or a model file, and import the library inside a function.
     """
     found = []
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         names = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
         names += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
         for library in {name.split(".")[0] for name in names} & set(HEAVY):
@@ -333,7 +340,7 @@ def is_name_of_part(node: ast.AST) -> bool:
 def decisions_by_part_name(tree: ast.AST) -> list[str]:
     """Expressions that ask how a part's name is spelt; to look a joint's partner up by its name is allowed."""
     found = []
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         asked = False
         if isinstance(node, ast.Compare):
             sides = [node.left, *node.comparators]

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from pareto_monoped import errors
+from pareto_monoped.cad.film import require_video
 from pareto_monoped.compute.cluster import DaskWorkers
 from pareto_monoped.errors import EXTRAS, InputError
 
@@ -50,37 +51,32 @@ def test_an_extra_names_these_packages(extra):
     assert not names & {line.partition(">")[0] for line in project["dependencies"]}
 
 
-@pytest.mark.parametrize(
-    ("words", "extra"),
-    [
-        (["export", "--case", "C", "-o", "out"], "cad"),
-        (["pareto", "nothing.toml", "-o", "out"], "cad"),
-        (["simulate", "--gif", "jump.gif"], "cad"),
-        (["trials", "nothing.db", "--parquet", "t.parquet"], "parquet"),
-    ],
-    ids=lambda given: given[0] if isinstance(given, list) else given,
-)
-def test_a_command_says_what_to_install(words, extra, tmp_path):
-    run = without_extras(f"from pareto_monoped.cli import main; main({words!r})", tmp_path)
-    assert run.returncode == 2
-    assert f"not installed; install the extra: pip install 'pareto-monoped[{extra}]'" in run.stderr
-    assert len(run.stderr.splitlines()) == 1
+NEEDS = [
+    (["export", "--case", "C", "-o", "out"], "cad"),
+    (["pareto", "nothing.toml", "-o", "out"], "cad"),
+    (["simulate", "--gif", "jump.gif"], "cad"),
+    (["trials", "nothing.db", "--parquet", "t.parquet"], "parquet"),
+]
+"""Commands, and the extra that each needs."""
+
+
+def test_a_command_says_what_to_install(tmp_path):
+    code = f"from pareto_monoped.cli import _run; print([_run(words) for words, _ in {NEEDS!r}])"
+    run = without_extras(code, tmp_path)
+    assert run.stdout.strip() == str([2] * len(NEEDS)), run.stderr
+    for said, (_, extra) in zip(run.stderr.splitlines(), NEEDS, strict=True):
+        assert f"not installed; install the extra: pip install 'pareto-monoped[{extra}]'" in said
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_video_without_an_encoder_says_what_to_install(tmp_path):
-    code = """
-    from pathlib import Path
-    from pareto_monoped.cad.film import require_video
-    from pareto_monoped.errors import InputError
-    try:
+def test_a_video_without_an_encoder_says_what_to_install(monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    monkeypatch.setattr(errors, "find_spec", lambda module: None)
+    with pytest.raises(InputError) as caught:
         require_video(Path("jump.mp4"))
-    except InputError as error:
-        print(error)
-    """
-    run = without_extras(code, tmp_path, ["video"])
-    assert "--video: needs imageio-ffmpeg, which is not installed" in run.stdout, run.stderr
-    assert run.stdout.endswith("pip install 'pareto-monoped[video]', or install the program ffmpeg, or use --gif\n")
+    said = str(caught.value)
+    assert said.startswith("--video: needs imageio-ffmpeg, which is not installed")
+    assert said.endswith("pip install 'pareto-monoped[video]', or install the program ffmpeg, or use --gif")
 
 
 def test_a_scheduler_without_dask_says_what_to_install(monkeypatch):
@@ -97,14 +93,15 @@ def test_all_packages_that_are_missing_are_named(monkeypatch):
     errors.require_extra("cad", "CAD")
 
 
-def test_searching_choosing_and_reporting_need_no_cad(tmp_path):
-    code = """
+@pytest.mark.parametrize("figures", [[], pytest.param(["--figures", "figures"], marks=pytest.mark.long)], ids=len)
+def test_searching_choosing_and_reporting_need_no_cad(tmp_path, figures):
+    code = f"""
     import pareto_monoped as pm
     from pareto_monoped.cli import _run
     stored = pm.run(pm.Study.define(name="s", evaluations=20, algorithm="random"), "s.db")
     knee = stored.pick("knee").trial
     pm.plot_front(stored)
-    assert _run(["report", "s.db", "-o", "s.html", "--figures", "figures"]) == 0
+    assert _run(["report", "s.db", "-o", "s.html", *{figures}]) == 0
     assert _run(["simulate", "--case", "C", "--model", "c.xml"]) == 0
     assert _run(["robust", "s.db", "--trial", str(knee), "--samples", "256"]) == 0
     """

@@ -91,8 +91,12 @@ seeds = [1]
 """
 
 
-def basis(folder: Path) -> None:
-    """Files that every call finds; made by the package itself, so that all of it is imported when calls are forked."""
+_WORTH_ALL = 20
+"""Calls from which it saves time to import everything before they are forked: our own choice."""
+
+
+def basis(folder: Path, *, ready: bool = True) -> None:
+    """Files that every call finds; if ``ready``, all of the package is then imported when calls are forked."""
     from pareto_monoped import cli
 
     folder.mkdir()
@@ -112,16 +116,18 @@ def basis(folder: Path) -> None:
     study, db = folder / "study.toml", folder / "s.db"
     warm = folder.parent / "warm"
     warm.mkdir()
+    most = None if ready else 1  # the study is a file that calls find
     for words in (
         ["run", study, "--db", db, "--workers", "1"], ["report", db, "-o", warm / "r.html", "--figures", warm],
         ["table1"], ["actuators", "--figure", warm / "a.svg"], ["actuators", "--rules", "paper"], ["verify", db],
         ["pick", db, "--knee", "--alternatives", "2"], ["robust", db, "--trial", "0", "--samples", "64"],
         ["status", db], ["trials", db], ["campaign", folder / "grid.toml", "--status", "--report", warm / "c.html"],
         ["robust", folder / "own.db", "--trial", "0", "--samples", "64"], ["front", folder / "own.db"],
-    ):  # fmt: skip
+    )[:most]:  # fmt: skip
         with contextlib.redirect_stdout(None), contextlib.redirect_stderr(None):
             cli._run([str(word) for word in words])
-    from pareto_monoped.cli import exports, pareto  # noqa: F401
+    if ready:
+        from pareto_monoped.cli import exports, pareto  # noqa: F401
 
 
 def _record(folder: Path) -> dict[str, Any]:
@@ -321,7 +327,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory(prefix="fuzz-") as temporary, _disk(Path(temporary) / "disk", given.mount):
         root = Path(temporary)
         root.chmod(0o755)
-        basis(root / "basis")
+        basis(root / "basis", ready=len(numbers) >= _WORTH_ALL)
         for done, number in enumerate(numbers, 1):
             call, (code, _, err), seconds, wrong = one(given.seed, number, root / "basis", root / "call", given)
             longest = sorted([*longest, (*seconds, number, call.words)], reverse=True)[:5]

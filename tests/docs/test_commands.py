@@ -72,15 +72,20 @@ def searches() -> dict[str, tuple[Path, str]]:
 
 
 LESS = {
-    "export": ("--formats", "dxf"),  # its files are those that other tests look at; here are its parts and its checks
-    "run studies/quick.toml": ("--evaluations", "400"),  # half of them: of a search, only words are compared
-    "run studies/robust.toml": ("--evaluations", "20"),
+    "export": ("--formats", "dxf"),  # its files and its checks are those that other tests look at; here are its parts
+    "run studies/quick.toml": ("--evaluations", "300"),  # of a search, only words are compared
+    "robust": ("--every", "20"),  # of a front that has a quarter of the designs
+    "run studies/robust.toml": ("--evaluations", "10"),
+    "run studies/case_c.toml": ("--evaluations", "120"),
 }
-"""Commands that are run with further words, since they take long as they are shown."""
+"""Beginnings of commands that are run with further words, since they take long as they are shown."""
+ELSEWHERE = {"pareto-monoped simulate --case C --gif jump.gif"}
+"""Commands that only long tests run here, as they mesh a robot: tests/cli/test_watching.py has them."""
 LONG = {"studies.md"}
 """Pages whose commands take as long as those of all others: a campaign over motors, with its report."""
 
 
+@pytest.mark.usefixtures("unchecked")
 @pytest.mark.parametrize(
     "page",
     [
@@ -90,7 +95,7 @@ LONG = {"studies.md"}
     ],
 )
 def test_commands_of_the_page_run_and_print_what_it_shows(
-    page, tmp_path, monkeypatch, capsys, tmp_path_factory, searches
+    page, tmp_path, monkeypatch, capsys, tmp_path_factory, searches, pytestconfig
 ):
     shutil.copytree(ROOT / "studies", tmp_path / "studies", ignore=shutil.ignore_patterns("*.db*"))
     (tmp_path / "reports").mkdir()
@@ -103,11 +108,14 @@ def test_commands_of_the_page_run_and_print_what_it_shows(
             subprocess.run(["make", "-n", *words], cwd=ROOT, check=True, capture_output=True)
             continue
         assert program == "pareto-monoped"
+        if command in ELSEWHERE and pytestconfig.getoption("markexpr") == "not long":
+            continue
         if place == 0 and command in searches:
             folder, printed = searches[command]
             shutil.copytree(folder, "studies", dirs_exist_ok=True)
         else:
-            code = cli([*words, *LESS.get(" ".join(words[:2]), LESS.get(words[0], ()))])
+            given = " ".join(words)
+            code = cli([*words, *next((more for start, more in LESS.items() if given.startswith(start)), ())])
             printed, said = capsys.readouterr()
             assert code == 0, f"{command}: {said}"
         if place == 0 and words[0] == "run":
@@ -144,7 +152,9 @@ def test_the_study_shown_finds_designs_within_its_limits(tmp_path):
 
 def test_the_program_shown_runs(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "program.py").write_text(block("python", "python.md"), encoding="utf-8")
+    shown = block("python", "python.md")
+    assert "evaluations=200" in shown
+    (tmp_path / "program.py").write_text(shown.replace("evaluations=200", "evaluations=80"), encoding="utf-8")
     runpy.run_path("program.py", run_name="__main__")
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert lines[0] == ["stiffness_n_per_m", "height_m", "energy_j", "status", "reason"]

@@ -26,7 +26,8 @@ def test_the_page_shows_what_its_script_predicts(script, capsys):
     assert len(rows(shown[1])) == 1 + 2 * 4 * 3  # drives, terms, series
 
 
-def test_the_figure_has_what_the_page_shows(script, tmp_path):
+def test_the_figure_has_what_the_page_shows(script, tmp_path, monkeypatch):
+    monkeypatch.setattr(script, "SAMPLES", 16)
     leg = load_leg(script.LEG)
     given = script.bands(leg)
     script.draw(leg, given, given, tmp_path / "leg.svg")

@@ -47,9 +47,9 @@ def other_seed(folder) -> Path:
 
 
 @pytest.fixture(scope="session")
-def more_seeds(folder) -> list[Path]:
-    """The same study with two other seeds and its own budget: three runs have a median."""
-    return [made(folder, seed=seed) for seed in (4, 6)]
+def seeds(folder) -> list[Path]:
+    """The same study with three seeds and one small budget: three runs have a median."""
+    return [made(folder, seed=seed, evaluations=60) for seed in (3, 4, 6)]
 
 
 @pytest.fixture(scope="session")
@@ -84,6 +84,19 @@ def source(data, resimulation) -> Source:
 @pytest.fixture(scope="session")
 def payload(source):
     return build([source])
+
+
+@pytest.fixture(scope="session")
+def both(source, source_u12):
+    """The page's content for studies of two motors."""
+    return build([source, source_u12])
+
+
+@pytest.fixture(scope="session")
+def both_file(folder, both) -> Path:
+    made = folder / "both.html"
+    made.write_text(page(both), encoding="utf-8")
+    return made
 
 
 def unpacked(text: str) -> list[float]:
@@ -131,6 +144,8 @@ class Tab:
         self.complaints: list[str] = []
         self.requests: list[str] = []
         self.clicked_s = -math.inf
+        self.seen_as = ("", "")
+        self.at_first: dict[str, str] = {}
         self.page.on("console", lambda m: self.complaints.append(m.text) if m.type == "error" else None)
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("dialog", lambda dialog: self.complaints.append(f"dialog {dialog.message}") or dialog.dismiss())
@@ -152,7 +167,13 @@ class Tab:
         """A screen of this size, with these colours."""
         if self.page.viewport_size != {"width": width, "height": height}:
             self.page.set_viewport_size({"width": width, "height": height})
-        self.page.emulate_media(media="screen", color_scheme=scheme)
+        self.medium("screen", scheme)
+
+    def medium(self, media: str, scheme: str) -> None:
+        """Show the page on a screen or in print; to ask for what is there already would paint all of it again."""
+        if self.seen_as != (media, scheme):
+            self.page.emulate_media(media=media, color_scheme=scheme)
+            self.seen_as = (media, scheme)
 
     def reset(self) -> None:
         """The view as it was at first, with the first design of the front selected."""
@@ -215,7 +236,7 @@ class Tab:
 
     def scroll_through(self) -> None:
         """Let every chart come into view."""
-        for top in range(0, self.page.evaluate("document.documentElement.scrollHeight"), 600):
+        for top in range(0, self.page.evaluate("document.documentElement.scrollHeight"), 800):
             self.page.evaluate(f"window.scrollTo(0, {top})")
             self.page.wait_for_timeout(40)
         self.page.evaluate("window.scrollTo(0, 0)")
@@ -240,6 +261,7 @@ def shared(file, browser) -> Tab:
     """That page in a tab, for all tests that a reset is enough for."""
     tab = Tab(browser)
     tab.show(file)
+    tab.at_first = {part: tab.text(part) for part in ("#subject", "header")}
     return tab
 
 

@@ -1,11 +1,8 @@
 """The page for everyone: axe-core, the keyboard alone, a finger on a phone."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
-
-from pareto_monoped.report.page import build, page
 
 pytestmark = pytest.mark.browser
 
@@ -19,10 +16,8 @@ VIEWS = {
 
 
 @pytest.fixture(scope="module")
-def file(folder, source, source_u12):
-    made = folder / "access.html"
-    made.write_text(page(build([source, replace(source_u12)])), encoding="utf-8")
-    return made
+def file(both_file):
+    return both_file
 
 
 # Of every two of size, colours and view one is tried that has both; the other half takes longer tests.

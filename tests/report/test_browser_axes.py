@@ -85,15 +85,19 @@ def test_a_measure_over_decades_gets_a_logarithmic_axis_by_itself(tab, payload):
     assert ratios[calm] < 20
     tab.page.select_option("#across", calm)
     assert not tab.page.is_checked("#log-x")
+    # All that span decades, and a few of those that do not: each costs a drawing.
+    asked = [name for name, ratio in ratios.items() if ratio > 25]
+    asked += sorted((name for name, ratio in ratios.items() if ratio < 7.5), key=ratios.get)[-5:]
     many = tab.page.evaluate(
-        """() => {
+        """(asked) => {
             const select = document.getElementById("across");
-            return [...select.options].map((o) => o.value).filter((name) => {
+            return [...select.options].map((o) => o.value).filter((name) => asked.includes(name)).filter((name) => {
                 select.value = name;
                 select.dispatchEvent(new Event("change"));
                 return document.getElementById("log-x").checked;
             });
-        }"""
+        }""",
+        asked,
     )
     known = {name for name, ratio in ratios.items() if ratio > 25}
     assert known <= set(many)

@@ -157,7 +157,7 @@ def test_by_keyboard_alone_at_any_width_and_in_any_colours(tab, made, width, sch
 def test_paper_is_light_whatever_the_screen(tab):
     tab.look(scheme="dark")
     assert tab.page.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--ink').trim()") == "#e6edf3"
-    tab.page.emulate_media(media="print", color_scheme="dark")
+    tab.medium("print", "dark")
     assert tab.page.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--ink').trim()") == "#1b1f24"
     for selector in ("#ask", "nav", ".player", "#keep"):
         assert tab.page.is_hidden(selector)

@@ -7,7 +7,6 @@ from urllib.parse import quote
 import numpy as np
 import pytest
 
-from pareto_monoped.report.page import build, page
 from tests.report.conftest import front_below, telling_mass_kg
 
 pytestmark = pytest.mark.browser
@@ -203,12 +202,9 @@ def test_links_within_the_page_keep_the_view(tab, limits):
     assert tab.page.evaluate("document.getElementById('search').getBoundingClientRect().top") < 300
 
 
-def test_keys_reach_every_study_shown(source, source_u12, folder, open_tab):
-    made = folder / "keys.html"
-    payload = build([source, source_u12])
-    made.write_text(page(payload), encoding="utf-8")
-    tab = open_tab(made)
-    first, second = payload.studies
+def test_keys_reach_every_study_shown(both, both_file, open_tab):
+    tab = open_tab(both_file)
+    first, second = both.studies
     tab.page.focus("#front-chart")
     tab.page.keyboard.press("Home")
     assert trial_shown(tab) == first.trials.trial[first.front[0]]

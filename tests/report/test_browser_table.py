@@ -151,6 +151,6 @@ def test_without_scripts_and_in_print_the_plain_table_is_there(file, payload, br
     assert bare.is_visible("#table .plain")
     assert not bare.is_visible("#rows")
     context.close()
-    tab.page.emulate_media(media="print")
+    tab.medium("print", "light")
     assert tab.page.is_visible("#table .plain")
     assert not tab.page.is_visible("#rows")

@@ -5,7 +5,6 @@ import pandas as pd
 import pytest
 
 from pareto_monoped.report.packing import unpacked_column
-from pareto_monoped.report.page import build
 from pareto_monoped.report.tables import MOST_ROWS, designs_table, evenly
 
 
@@ -71,8 +70,8 @@ def test_without_a_front_there_is_a_sentence(payload):
     assert "There is no front yet" in designs_table(replace(payload, studies=[replace(card, front=[])]))
 
 
-def test_each_study_has_its_table_under_its_name(source, source_u12):
-    payload = build([source, source_u12])
+def test_each_study_has_its_table_under_its_name(both):
+    payload = both
     text = designs_table(payload)
     assert [len(table) for table in read(text)] == [len(card.front) for card in payload.studies]
     assert all(f"{card.label}: All" in text for card in payload.studies)

@@ -9,8 +9,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from pareto_monoped.actuator.search import build_map, map_for
-from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import OutputError
 from pareto_monoped.report.figures import (
@@ -25,7 +24,6 @@ from pareto_monoped.report.figures import (
 )
 from pareto_monoped.report.front_figure import JOINTS, STYLES, front_figure
 from pareto_monoped.report.packing import unpacked
-from pareto_monoped.report.page import build
 
 NAMES = ("front", "convergence", "along_the_front", "mass_over_ratio", "link_mass", "states_over_time")
 
@@ -148,11 +146,10 @@ def test_the_torques_stand_between_the_limits_of_their_gearboxes_in_the_pages_co
         assert np.abs(line.get_ydata()).max() <= gearbox.peak_torque_n_m * 1.01
 
 
-def test_no_legend_covers_data(payload, source_u12, source):
-    several = build([source, source_u12])
+def test_no_legend_covers_data(both):
     for make in (front_figure, _links, _states, _map, _convergence, _along):
         figure = Figure(figsize=(3.5, 2.6), layout="constrained")
-        assert make(several, figure)
+        assert make(both, figure)
         canvas = FigureCanvasAgg(figure)
         canvas.draw()
         renderer = canvas.get_renderer()
@@ -181,9 +178,9 @@ def test_variables_along_the_front_are_in_their_shown_units(payload, data):
     np.testing.assert_allclose(thigh.get_xdata(), data.front()["height_m"], rtol=1e-4)
 
 
-def test_link_masses_have_a_line_per_motor(source, source_u12):
+def test_link_masses_have_a_line_per_motor(both):
     figure = Figure()
-    _links(build([source, source_u12]), figure)
+    _links(both, figure)
     labels = [line.get_label() for line in figure.axes[0].lines]
     assert labels == ["thigh, VT8020", "shank, VT8020", "thigh, U12", "shank, U12"]
 
@@ -222,8 +219,7 @@ def test_the_figure_of_a_map_has_a_point_for_every_gearbox_of_either_family(tmp_
 
 def test_two_maps_of_a_motor_lie_over_each_other(tmp_path):
     found = map_for("VT8020")
-    other = build_map(found.motor, ActuatorSettings(rules="iso6336"))
-    write_map_figure({"paper": found, "ISO 6336": other}, tmp_path / "maps.svg")
+    write_map_figure({"paper": found, "ISO 6336": map_for("VT8020", "iso6336")}, tmp_path / "maps.svg")
     words, _ = drawn(tmp_path / "maps.svg")
     assert {"ISSPG, paper", "ESSPG, paper", "ISSPG, ISO 6336", "ESSPG, ISO 6336"} <= words
     assert "VT8020" in words

@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from pareto_monoped.design import NAMES
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.report.card import Source
-from pareto_monoped.report.figures import write_figures
+from pareto_monoped.report.front_figure import front_figure
 from pareto_monoped.report.page import build, page
 from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.robot.population import robot_arrays
@@ -24,7 +25,7 @@ TINTS = 6
 def several(folder):
     algorithm = {"name": "random", "population": 60}
     listed = {"gear_list": True, "rules": "iso6336", "motor": list(MOTORS)}
-    data = read_study(made(folder, name="any", evaluations=300, audit=False, algorithm=algorithm, **listed))
+    data = read_study(made(folder, name="any", evaluations=180, audit=False, algorithm=algorithm, **listed))
     assert data.front()["motor"].nunique() > 1
     return Source(data=data, resimulation=resimulate(data, most_jumps=4), models={})
 
@@ -64,7 +65,7 @@ def test_jumps_masses_and_cases_are_those_of_the_motor(several, payload):
     assert case.height_m == pytest.approx(alone.height_m[0], abs=1e-4)
 
 
-def test_pairs_of_motors_have_gearboxes_of_either_and_a_leg_of_both(folder, tmp_path):
+def test_pairs_of_motors_have_gearboxes_of_either_and_a_leg_of_both(folder):
     listed = {"gear_list": True, "rules": "iso6336", "hip_motor": "U12", "knee_motor": ["VT8020", "U8"]}
     algorithm = {"name": "random", "population": 60}
     data = read_study(made(folder, name="pairs", evaluations=60, audit=False, algorithm=algorithm, **listed))
@@ -91,9 +92,7 @@ def test_pairs_of_motors_have_gearboxes_of_either_and_a_leg_of_both(folder, tmp_
     for kit, leg in zip(payload.kits, legs, strict=True):
         assert kit.leg.housing_radius_m == pytest.approx(1e-3 * leg.hip.housing_radius_mm)
         assert kit.leg.thigh_hip_radius_m == pytest.approx(1e-3 * leg.knee.rim_radius_mm)
-    write_figures(payload, tmp_path)
-    text = (tmp_path / "front.svg").read_text()
-    assert all(f">{motor}</text>" in text for motor in set(data.front()["motor"]))
+    assert set(data.front()["motor"]) <= words_of_the_front(payload)
 
 
 def test_a_study_with_one_motor_has_no_column_of_motors(source):
@@ -117,17 +116,22 @@ def test_studies_share_maps_of_equal_motors_and_rules(several, source):
     assert (other.studies[0].kit, other.studies[1].kit) == (0, 2)
 
 
-def test_the_figure_for_print_names_the_motors(several, payload, tmp_path):
-    write_figures(payload, tmp_path)
-    text = (tmp_path / "front.svg").read_text()
-    for motor in set(several.data.front()["motor"]):
-        assert f">{motor}</text>" in text
+def words_of_the_front(payload):
+    """What the legends of the figure for print say."""
+    figure = Figure()
+    assert front_figure(payload, figure)
+    legends = [*figure.legends, *(axes.get_legend() for axes in figure.axes if axes.get_legend())]
+    return {text.get_text() for legend in legends for text in legend.get_texts()}
+
+
+def test_the_figure_for_print_names_the_motors(several, payload):
+    assert set(several.data.front()["motor"]) <= words_of_the_front(payload)
 
 
 @pytest.mark.browser
-def test_the_page_shows_colours_and_filters_motors(several, folder, open_tab):
+def test_the_page_shows_colours_and_filters_motors(several, payload, folder, open_tab):
     file = folder / "motors.html"
-    file.write_text(page(build([several])), encoding="utf-8")
+    file.write_text(page(payload), encoding="utf-8")
     tab, front = open_tab(file), several.data.front()
 
     def marker(name):
@@ -165,14 +169,6 @@ def test_the_page_shows_colours_and_filters_motors(several, folder, open_tab):
     assert marker("opacity") == [1] * len(front)
     tab.scroll_through()
     tab.quiet(file)
-
-
-@pytest.mark.browser
-def test_a_page_without_a_choice_has_no_switches_of_motors(payload, source, folder, open_tab):
-    file = folder / "one_motor.html"
-    file.write_text(page(build([source])), encoding="utf-8")
-    tab = open_tab(file)
-    assert not tab.page.is_visible("#motors")
 
 
 @pytest.mark.browser

@@ -43,9 +43,19 @@ def two(source, battery):
     return [source, replace(battery, data=replace(battery.data, study=replace(battery.data.study, **settings)))]
 
 
-def written(folder, name, sources):
+@pytest.fixture(scope="module")
+def three_payload(three):
+    return build([three])
+
+
+@pytest.fixture(scope="module")
+def two_payload(two):
+    return build(two)
+
+
+def written(folder, name, payload):
     file = folder / name
-    file.write_text(page(build(sources)), encoding="utf-8")
+    file.write_text(page(payload), encoding="utf-8")
     return file
 
 
@@ -53,20 +63,20 @@ def chart(tab, what):
     return tab.page.evaluate(f"(() => {{ const gd = document.getElementById('front-chart'); return {what}; }})()")
 
 
-def test_the_page_has_every_objective_of_every_trial(three, two):
-    payload = build([three])
+def test_the_page_has_every_objective_of_every_trial(three_payload, two_payload):
+    payload = three_payload
     assert (tuple(payload.objectives), tuple(payload.goals)) == (THREE, THREE)
     (card,) = payload.studies
     for name in THREE:
         assert len(card.trials.columns[name]) == len(card.trials.trial)
-    both = build(two)
+    both = two_payload
     assert both.goals == ("height_m", "energy_j", "electrical_energy_j")
     assert [card.label for card in both.studies] == ["small by mechanical energy", "small by battery energy"]
     assert both.title == "small"
 
 
-def test_its_words_name_the_objectives(three):
-    text = head(build([three]))
+def test_its_words_name_the_objectives(three, three_payload):
+    text = head(three_payload)
     data = three.data
     front = data.front()
     sentence, standing, _ = sentences(data, front, [])
@@ -80,8 +90,8 @@ def test_its_words_name_the_objectives(three):
     assert f"0.80 m needs at least {reached['electrical_energy_j'].min():.2f} J" in sentence
 
 
-def test_three_objectives_have_a_chart_with_a_third_as_colour(three, folder, open_tab):
-    file = written(folder, "three_objectives.html", [three])
+def test_three_objectives_have_a_chart_with_a_third_as_colour(three, three_payload, folder, open_tab):
+    file = written(folder, "three_objectives.html", three_payload)
     tab = open_tab(file)
     front = three.data.front()
     shown = chart(tab, "gd.layers.filter((t) => t.name === 'front').map((t) => [t.x, t.y, t.marker.color, t.mode])")
@@ -97,12 +107,7 @@ def test_three_objectives_have_a_chart_with_a_third_as_colour(three, folder, ope
     assert swapped == pytest.approx(front["mass_kg"].tolist(), rel=1e-4)
     assert not tab.page.is_visible("[data-show=published]")
     tab.scroll_through()
-    tab.quiet(file)
-
-
-def test_the_form_asks_for_the_first_two_objectives(three, folder, open_tab):
-    tab = open_tab(written(folder, "three_objectives.html", [three]))
-    front = three.data.front()
+    # The form asks for the first two objectives.
     tab.page.fill("#ask-height", "0.8")
     best = front[front["height_m"] >= 0.8]
     tab.expects("#ask-answer", f"Trial {best.loc[best['electrical_energy_j'].idxmin(), 'trial']},")
@@ -112,10 +117,11 @@ def test_the_form_asks_for_the_first_two_objectives(three, folder, open_tab):
     able = front[front["electrical_energy_j"] <= allowed]
     tab.expects("#ask-answer", f"Trial {able.loc[able['height_m'].idxmax(), 'trial']},")
     assert tab.text("label[for='ask-energy']").startswith("Energy from the battery at most")
+    tab.quiet(file)
 
 
-def test_two_fronts_lie_in_one_chart_by_either_energy(two, folder, open_tab):
-    file = written(folder, "two_fronts.html", two)
+def test_two_fronts_lie_in_one_chart_by_either_energy(two, two_payload, folder, open_tab):
+    file = written(folder, "two_fronts.html", two_payload)
     tab = open_tab(file)
     modes = "gd.layers.filter((t) => t.name === 'front').map((t) => t.mode)"
     assert chart(tab, modes) == ["lines+markers", "markers"]
@@ -130,29 +136,29 @@ def test_two_fronts_lie_in_one_chart_by_either_energy(two, folder, open_tab):
 
 
 @pytest.mark.long
-def test_no_page_is_wider_than_its_window(three, two, folder, open_tab):
-    for name, sources in (("three_objectives.html", [three]), ("two_fronts.html", two)):
-        tab = open_tab(written(folder, name, sources))
+def test_no_page_is_wider_than_its_window(three_payload, two_payload, folder, open_tab):
+    for name, payload in (("three_objectives.html", three_payload), ("two_fronts.html", two_payload)):
+        tab = open_tab(written(folder, name, payload))
         for width in (1280, 420):
             tab.look(width)
             tab.scroll_through()
             assert tab.page.evaluate("document.documentElement.scrollWidth") <= width
 
 
-def test_the_steps_of_the_front_can_be_reached(source, folder, open_tab):
+def test_the_steps_of_the_front_can_be_reached(payload, shared):
     """Between two designs the chart shows the height of the lower one: the next is reached at its own energy only."""
-    tab = open_tab(written(folder, "steps.html", [source]))
-    assert chart(tab, "gd.layers.find((t) => t.name === 'front').line.shape") == "hv"
+    shared.reset()
+    assert chart(shared, "gd.layers.find((t) => t.name === 'front').line.shape") == "hv"
     from matplotlib.figure import Figure
 
     figure = Figure()
-    assert front_figure(build([source]), figure)
+    assert front_figure(payload, figure)
     (line,) = [line for line in figure.axes[0].lines if line.get_label() == "small"]
     assert line.get_drawstyle() == "steps-post"
 
 
-def test_the_table_of_both_energies_says_what_the_first_costs(two):
-    text = comparison_tables(build(two)).split('id="energies"')[1]
+def test_the_table_of_both_energies_says_what_the_first_costs(two, two_payload):
+    text = comparison_tables(two_payload).split('id="energies"')[1]
     for row in choices(*(source.data for source in two)):
         assert f"{row.height_m:.1f} m" in text
         if row.cost is not None:
@@ -172,11 +178,11 @@ def test_a_surface_of_two_minimised_objectives_counts_downward():
     assert found.tolist() == [np.inf, 50.0, 50.0, 20.0]
 
 
-def test_figures_for_print_have_the_objectives_as_axes(three):
+def test_figures_for_print_have_the_objectives_as_axes(three_payload):
     from matplotlib.figure import Figure
 
     figure = Figure()
-    assert front_figure(build([three]), figure)
+    assert front_figure(three_payload, figure)
     assert figure.axes[0].get_xlabel() == "energy from the battery (J)"
     assert figure.axes[0].get_ylabel() == "height (m)"
     assert figure.axes[1].get_ylabel() == "mass (kg)"

@@ -101,7 +101,7 @@ def test_designs_that_the_page_has_not_are_left_out(uncertain, stored):
 
 
 def test_each_pick_has_its_alternatives(data, resimulation):
-    many = grown(data, 2000)
+    many = grown(data, 600)
     card, found = build([Source(data=many, resimulation=resimulation, models={})]).studies[0], 0
     for picked in card.picks:
         expected = alternatives(many, card.trials.trial[picked.row])
