@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.ratiomap import JointMaps
-from pareto_monoped.actuator.search import map_for, map_of
+from pareto_monoped.actuator.search import build_map, map_for
+from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.config import read_shipped
 from pareto_monoped.design import NAMES, PAPER_CASES
 from pareto_monoped.errors import InputError
@@ -303,7 +304,8 @@ def test_a_motor_s_own_price_goes_before_its_class():
     known = load_motor("U8")
     priced = replace(known, name="priced", price_eur=1000.0)
     design = C.replace({"hip_ratio": 5.0, "knee_ratio": 6.0})
-    robots = [build_robot(design, map_of(motor, "iso6336", source="test")) for motor in (known, priced)]
+    few = ActuatorSettings(rules="iso6336", modules_mm=(0.5, 0.6))
+    robots = [build_robot(design, build_map(motor, few)) for motor in (known, priced)]
     assert {robot.hip.family for robot in robots} == {"ISSPG"}
     # U8 without its frame has 0.14 kg: 2 x 80 + 0.14 x 400 = 216 EUR by its class, at either joint.
     assert robots[1].cost.total_eur - robots[0].cost.total_eur == pytest.approx(2.0 * (1000.0 - 216.0))
