@@ -138,14 +138,17 @@ def moments(
 
 @lru_cache(maxsize=1)
 def _controller(sources: int) -> Callable[[Floats, Floats, Floats, Any], None]:
-    """Return the compiled controller, which closes over ``sources`` (``controller_record.origin``)."""
+    """Return the compiled controller, which closes over ``sources`` (``controller_record.origin``).
+
+    It closes over the module: a compiled function would be another one in each process, and none be found on disk.
+    """
     from pareto_monoped.compute.compiled import compiled
-    from pareto_monoped.jump.controller import control
+    from pareto_monoped.jump import controller
 
     @compiled
     def act(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
         _ = sources
-        control(q, v, ctrl, jump)
+        controller.control(q, v, ctrl, jump)
 
     return act
 

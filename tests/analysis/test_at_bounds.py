@@ -117,7 +117,7 @@ def test_a_list_of_one_gearbox_has_no_bounds(tmp_path, lower, upper, told):
 
 
 def test_a_bound_of_a_gear_list_is_its_last_gearbox_and_not_what_the_study_says(tmp_path):
-    run(made(rules="iso6336"), tmp_path / "s.db", evaluations=8)
+    run(made(rules="iso6336", motor="U8"), tmp_path / "s.db", evaluations=8)
     data = read_study(tmp_path / "s.db")
     last = data.coordinates.limits("knee_ratio")[1]
     bounds = data.study.variables["knee_ratio"]

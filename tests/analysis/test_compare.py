@@ -140,10 +140,11 @@ def test_a_wrong_log_ends_in_one_line(tmp_path, lines, said):
 
 
 def test_a_log_of_too_few_samples_is_refused():
-    _, robots, _ = known("C")
-    jump = trace_of(robots, control_of(PAPER_CASES["C"].design.as_array()[None]), load_calibration("reference"))
+    design, calibration = PAPER_CASES["C"].design, load_calibration("reference")
+    robots = robot_arrays(design.as_array(), map_for("VT8020"))
+    jump = trace_of(robots, control_of(design.as_array()[None]), calibration)
     ampere = jump["knee_motor_torque_n_m"] / (robots.ratio[0, 1] * robots.torque_constant_n_m_per_a[0, 1])
     signals = {"height": jump["base_z_m"], "knee": jump["knee_rad"], "knee_current": ampere}
     few = Log(time_s=jump["time_s"][::50], signals={name: column[::50] for name, column in signals.items()})
     with pytest.raises(InputError, match=r"samples = .*must be 50 at least during the push; log faster"):
-        compare(few, known("C")[0], map_for("VT8020"), load_calibration("reference"))
+        compare(few, design, map_for("VT8020"), calibration)

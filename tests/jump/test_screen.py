@@ -70,7 +70,7 @@ def test_a_screen_does_not_depend_on_the_other_designs_nor_on_the_workers():
 @pytest.mark.parametrize(
     ("settings", "count"),
     [
-        ({}, 6),
+        ({}, 12),
         ({"name": "reference-3", "timestep_s": 4e-3, "control_period_s": 4e-3}, 12),
         pytest.param({}, 300, marks=pytest.mark.long),
     ],

@@ -15,7 +15,7 @@ from pareto_monoped.measures import MEASURE_NAMES
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.strength.groups import GROUP_MEASURES
 
-NAMES = ("MN8014", "U8", "VT8020")
+NAMES = ("VT8020", "MN8014", "U8")
 
 
 @pytest.fixture(scope="module")
