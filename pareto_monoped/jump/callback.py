@@ -19,8 +19,7 @@ import mujoco
 import numpy as np
 from numba import types
 
-from pareto_monoped.compute.compiled import c_function, compiled
-from pareto_monoped.design import Floats
+from pareto_monoped.compute.compiled import c_function
 from pareto_monoped.errors import SimulationError
 from pareto_monoped.jump.controller import control
 from pareto_monoped.jump.controller_record import RECORD, RECORD_NUMBERS, origin
@@ -113,22 +112,5 @@ def _controller(sources: int) -> Callable[[Any, Any], None]:
         jump = written[nu:].view(RECORD)[0]
         control(state[:nv], state[nv : 2 * nv], written[:nu], jump)
         _set_state(model, data, written.ctypes, _WRITTEN)
-
-    return act
-
-
-@lru_cache(maxsize=1)
-def called() -> Callable[[Floats, Floats, Floats, Any], None]:
-    """Return the compiled controller for a loop in Python, which calls it in every step."""
-    return _called(origin())
-
-
-def _called(sources: int) -> Callable[[Floats, Floats, Floats, Any], None]:
-    """Return it, closed over ``sources`` alone: closed over ``control``, it would differ in every process."""
-
-    @compiled
-    def act(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
-        _ = sources
-        control(q, v, ctrl, jump)
 
     return act

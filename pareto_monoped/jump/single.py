@@ -6,6 +6,7 @@ bit.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy as np
 from pareto_monoped.actuator.ratiomap import Maps
 from pareto_monoped.design import GRAVITY_M_PER_S2, Design, Floats, control_of
 from pareto_monoped.jump.calibration import Calibration
+from pareto_monoped.jump.controller_record import origin
 from pareto_monoped.jump.document import mjcf
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.model import coordinates, stand_mass_kg
@@ -91,11 +93,10 @@ def moments(
     """
     import mujoco
 
-    from pareto_monoped.jump.callback import called
     from pareto_monoped.jump.controller import FLYING
     from pareto_monoped.jump.population import first_records
 
-    act = called()
+    act = _controller(origin())
     model = mujoco.MjModel.from_xml_string(mjcf(robots, calibration))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
@@ -133,6 +134,23 @@ def moments(
             )
             if not running:
                 return
+
+
+@lru_cache(maxsize=1)
+def _controller(sources: int) -> Callable[[Floats, Floats, Floats, Any], None]:
+    """Return the compiled controller, which closes over ``sources`` (``controller_record.origin``).
+
+    It closes over the module: a compiled function would be another one in each process, and none be found on disk.
+    """
+    from pareto_monoped.compute.compiled import compiled
+    from pareto_monoped.jump import controller
+
+    @compiled
+    def act(q: Floats, v: Floats, ctrl: Floats, jump: Any) -> None:
+        _ = sources
+        controller.control(q, v, ctrl, jump)
+
+    return act
 
 
 def trace_of(robots: RobotArrays, control: Floats, calibration: Calibration) -> dict[str, Floats]:

@@ -100,8 +100,8 @@ def touched_mm(gears, tip, root, off_mm):
     base, most = float(mate.base_radius_mm), float(mate.root_radius_mm if root == "ring" else mate.tip_radius_mm)
     for side in (1.0, -1.0):
         low, high = 0.0, 12.0 / min(float(mate.teeth), float(shape.teeth))
-        for _ in range(4):
-            angle = np.linspace(low, high, 20001)
+        for _ in range(5):
+            angle = np.linspace(low, high, 3001)
             point = centre * np.exp(1j * angle) + float(shape.tip_radius_mm) * np.exp(1j * (at + turns * angle))
             inside = (np.abs(point) > base) & (np.abs(point) < most)
             angle, point = angle[inside], point[inside]

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from pareto_monoped.actuator.actuator import build_actuator
 from pareto_monoped.actuator.motor import HolePattern
 from pareto_monoped.actuator.motors import contradiction, load_motor, motor_names
-from pareto_monoped.actuator.search import map_of
+from pareto_monoped.actuator.search import map_for
 from pareto_monoped.errors import MotorError
 from pareto_monoped.geometry.roles import Role
 
@@ -194,8 +195,9 @@ def test_the_least_mounting_circle_clears_the_seat_of_the_rear_bearing(circle, h
     """In the backplate of an ISSPG: the pad of the threads begins where the wall of the seat ends, or further out."""
     motor = replace(load_motor("U8"), mount_holes=HolePattern(pitch_circle_mm=circle, diameter_mm=hole, count=4))
     assert contradiction(motor) is None
-    actuator = map_of(motor).lookup(4.5)
-    assert actuator.family == "ISSPG"
+    usual = map_for("U8").lookup(4.5)
+    assert usual.family == "ISSPG"
+    actuator = build_actuator(motor, "ISSPG", usual.gears, map_for("U8").settings)
     (plate,) = (part for part in actuator.parts if part.name == "backplate")
     outer_of_seat = 9.5 + 2.5
     inner_of_pad = min(
@@ -207,7 +209,10 @@ def test_the_least_mounting_circle_clears_the_seat_of_the_rear_bearing(circle, h
 def test_the_least_output_circle_clears_the_hub_of_the_coupling():
     motor = replace(load_motor("MN8014"), output_holes=HolePattern(pitch_circle_mm=18.0, diameter_mm=4.0, count=4))
     assert contradiction(motor) is None
-    (coupling,) = (part for part in map_of(motor).lookup(6.0).parts if part.role is Role.COUPLING)
+    usual = map_for("MN8014").lookup(6.0)
+    assert usual.family == "ESSPG"
+    actuator = build_actuator(motor, "ESSPG", usual.gears, map_for("MN8014").settings)
+    (coupling,) = (part for part in actuator.parts if part.role is Role.COUPLING)
     (prism,) = coupling.prisms
     bolts = next(hole for hole in prism.holes if getattr(hole, "count", 0) == 4)
     # 4 mm of metal around the sun's shaft of 6 mm, less half the play of a clearance hole.

@@ -78,7 +78,8 @@ def test_bushes_are_an_option(vt8020):
     from pareto_monoped.geometry.roles import Role
 
     rating = replace(SETTINGS.parts.rating, planet_bearing="bushes")
-    found = build_map(vt8020, replace(SETTINGS, parts=replace(SETTINGS.parts, rating=rating)))
+    few = replace(SETTINGS, parts=replace(SETTINGS.parts, rating=rating), modules_mm=(0.5, 0.6))
+    found = build_map(vt8020, few)
     parts = found.lookup(6.0).parts
     assert any(part.role is Role.BUSH for part in parts)
     assert not any(part.name == "planet_needles" for part in parts)

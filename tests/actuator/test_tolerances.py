@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import lru_cache
+from itertools import product
 
 import numpy as np
 import pytest
@@ -20,15 +21,20 @@ NO_TOLERANCE = ("axial play", "radial clearance")  # of bearings as they are bou
 
 
 @lru_cache(maxsize=4)
-def winners(name, rules="iso6336"):
+def winners(name, rules="iso6336", every=1):
     motor = load_motor(name)
     settings = ActuatorSettings(rules=rules)
+    won = [(family, one.best) for entry in map_of(motor, rules).entries for family, one in entry.families.items()]
     return [
-        build_actuator(motor, family, found.best.gears, settings, found.best.face_width_mm)
-        for entry in map_of(motor, rules).entries
-        for family, found in entry.families.items()
-        if found.best is not None
+        build_actuator(motor, family, best.gears, settings, best.face_width_mm)
+        for family, best in [one for one in won if one[1] is not None][::every]
     ]
+
+
+def some_winners(name, rules, count):
+    """As many, from the first interval on, or a few more."""
+    won = [one.best for entry in map_of(load_motor(name), rules).entries for one in entry.families.values() if one.best]
+    return winners(name, rules, max(1, len(won) // count))
 
 
 def key(link):
@@ -91,7 +97,17 @@ def at_the_limit(chains, chain, over_mm):
 
 
 @pytest.mark.parametrize(
-    ("name", "rules"), [*((name, "iso6336") for name in motor_names()), ("VT8020", "paper"), ("U12", "paper")]
+    ("name", "rules"),
+    [
+        ("VT8020", "iso6336"),
+        ("MAD_M6C12", "iso6336"),
+        ("VT8020", "paper"),
+        *(
+            pytest.param(name, rules, marks=pytest.mark.long)
+            for name, rules in [("U12", "paper"), *product(motor_names(), ["iso6336"])]
+            if name not in ("VT8020", "MAD_M6C12")
+        ),
+    ],
 )
 def test_no_winner_jams_at_the_worst_of_its_limits(name, rules):
     assert [chain.text for one in winners(name, rules) for chain in gearbox_chains(one) if chain.jams] == []
@@ -101,15 +117,14 @@ def test_no_winner_jams_at_the_worst_of_its_limits(name, rules):
     ("name", "rules", "count"),
     [
         ("VT8020", "iso6336", 3),
-        ("MN8014", "iso6336", 2),
+        pytest.param("MN8014", "iso6336", 2, marks=pytest.mark.long),
         ("U10", "paper", 2),
         *(pytest.param(name, "iso6336", 34, marks=pytest.mark.long) for name in motor_names()),
     ],
 )
 def test_the_share_that_assembles_is_that_of_gearboxes_put_together(name, rules, count):
-    found = winners(name, rules)
     some_jam = 0
-    for k, actuator in enumerate(found[:: max(1, len(found) // count)]):
+    for k, actuator in enumerate(some_winners(name, rules, count)):
         chains = gearbox_chains(actuator)
         assert shares(actuator, chains, k) == (1.0, 1.0)
         for factor in (1.6, 2.4):
@@ -119,18 +134,21 @@ def test_the_share_that_assembles_is_that_of_gearboxes_put_together(name, rules,
     assert some_jam >= count - 1
 
 
-@pytest.mark.parametrize("rules", ["paper", "iso6336"])
-def test_every_chain_ends_where_parts_meet(rules):
+@pytest.mark.parametrize(
+    ("rules", "every"),
+    [("iso6336", 18), *(pytest.param(rules, 6, marks=pytest.mark.long) for rules in ("paper", "iso6336"))],
+)
+def test_every_chain_ends_where_parts_meet(rules, every):
     """A little above its least gap a gearbox turns, a little below it jams: no length is missing or counted twice.
 
     Backlash is not quite linear in the distance of the axes. Widths of tips are so little linear that they are looked
     at within their limits only (``test_tip_limits``).
     """
-    seen, every = set(), set()
-    for actuator in (one for name in ("VT8020", "U12") for one in winners(name, rules)[::6]):
+    seen, tried = set(), set()
+    for actuator in (one for name in ("VT8020", "U12") for one in winners(name, rules, every)):
         chains = gearbox_chains(actuator)
         ending = [chain for chain in chains if not chain.name.startswith("width of the")]
-        every |= {(actuator.family, chain.name) for chain in ending}
+        tried |= {(actuator.family, chain.name) for chain in ending}
         for chain in ending:
             little_mm = {"backlash": 0.003, "running": 0.0005}.get(chain.name.split()[0], 0.01)
             above, below = (at_the_limit(chains, chain, over_mm) for over_mm in (little_mm, -little_mm))
@@ -139,13 +157,13 @@ def test_every_chain_ends_where_parts_meet(rules):
                 assert turns.tolist() == [True, False], chain.text
                 seen.add((actuator.family, chain.name))
     # Of these, other parts meet first; under iso6336, flanks meet before tips do.
-    missing = {one for one in every - seen if rules == "paper" or not one[1].startswith("clearance of the")}
+    missing = {one for one in tried - seen if rules == "paper" or not one[1].startswith("clearance of the")}
     assert missing <= {("ISSPG", "second carrier to coupling and dowels")}
 
 
 def test_every_length_with_limits_ends_at_faces_and_is_part_of_a_chain():
     used, limited = set(), set()
-    for actuator in (*winners("VT8020")[::9], *winners("U10", "paper")[::9]):
+    for actuator in (*winners("VT8020", every=9), *winners("U10", "paper", every=9)):
         used |= {(one.part, one.name) for chain in gearbox_chains(actuator) for one in chain.links}
         for part in actuator.parts:
             ends = {round(float(z), 6) for prism in part.prisms for z in (prism.z0_mm, prism.z1_mm)}

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from pareto_monoped.actuator.motors import load_motor
-from pareto_monoped.actuator.search import map_for, map_of
+from pareto_monoped.actuator.search import build_map, map_for
+from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.windings import PER_PHASE_AMPLITUDE, PER_PHASE_RMS
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.robot.population import robot_arrays
@@ -107,7 +108,8 @@ def test_jumps_use_the_line_to_line_resistance():
     assert (published.winding_resistance_ohm, published.winding_resistance_kind) == (0.063, "phase")
     assert robot_arrays(design, map_for("MAD_M6C12")).winding_resistance_ohm.tolist() == [[0.126, 0.126]]
     measured = replace(published, winding_resistance_kind="line_to_line", winding_resistance_ohm=0.99 / 7.872)
-    assert robot_arrays(design, map_of(measured)).winding_resistance_ohm == pytest.approx(0.126, rel=0.003)
+    few = build_map(measured, ActuatorSettings(modules_mm=(0.5, 0.6)))
+    assert robot_arrays(design, few).winding_resistance_ohm == pytest.approx(0.126, rel=0.003)
 
 
 def test_the_published_motor_constant_is_torque_per_root_of_this_heat():

@@ -8,9 +8,10 @@ import pytest
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.analysis.compare import PARAMETERS, Log, compare, read_log
-from pareto_monoped.design import NAMES, PAPER_CASES
+from pareto_monoped.design import NAMES, PAPER_CASES, control_of
 from pareto_monoped.errors import InputError
 from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.single import trace_of
 from pareto_monoped.robot.population import robot_arrays
 from tests.jump import planar
 from tests.jump.test_independent_simulator import machine
@@ -139,7 +140,11 @@ def test_a_wrong_log_ends_in_one_line(tmp_path, lines, said):
 
 
 def test_a_log_of_too_few_samples_is_refused():
-    log = blind_log("C", (1.0, 1.0, 0.0, 1.0), np.random.default_rng(0))
-    few = Log(time_s=log.time_s[::10], signals={name: column[::10] for name, column in log.signals.items()})
+    design, calibration = PAPER_CASES["C"].design, load_calibration("reference")
+    robots = robot_arrays(design.as_array(), map_for("VT8020"))
+    jump = trace_of(robots, control_of(design.as_array()[None]), calibration)
+    ampere = jump["knee_motor_torque_n_m"] / (robots.ratio[0, 1] * robots.torque_constant_n_m_per_a[0, 1])
+    signals = {"height": jump["base_z_m"], "knee": jump["knee_rad"], "knee_current": ampere}
+    few = Log(time_s=jump["time_s"][::50], signals={name: column[::50] for name, column in signals.items()})
     with pytest.raises(InputError, match=r"samples = .*must be 50 at least during the push; log faster"):
-        compare(few, known("C")[0], map_for("VT8020"), load_calibration("reference"))
+        compare(few, design, map_for("VT8020"), calibration)

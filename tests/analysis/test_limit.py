@@ -1,6 +1,7 @@
 """The best torque found for a design's hardware: certificates, gaps, the floor, and the command."""
 
 import json
+import re
 import shutil
 import sqlite3
 from contextlib import closing
@@ -44,7 +45,7 @@ def found():
     """With more jumps for the tracking law than it has of so few."""
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(module, "_SHARE", 2)
-        return limit_of(LIGHT, map_for("VT8020"), REFERENCE, jumps=360, workers=2, samples=FEW)
+        return limit_of(LIGHT, map_for("VT8020"), REFERENCE, jumps=200, workers=2, samples=FEW)
 
 
 @pytest.fixture(autouse=True)
@@ -205,18 +206,24 @@ def test_a_front_is_thinned_evenly_with_both_ends(db):
 def test_limits_are_stored_and_only_those_are_searched_that_are_not_there(db):
     front, searched = read_study(db).front(), []
     for count in (1, 2):
-        found = limits(db, front.iloc[:count], jumps=21, workers=1, progress=lambda *done: searched.append(done))
+        found = limits(db, front.iloc[:count], jumps=6, workers=1, progress=lambda *done: searched.append(done))
     assert searched == [(1, 1), (1, 1)]
     assert [one.trial for one in found] == front["trial"].tolist()[:2]
     assert {one.energy for one in found} == {"energy_j"}
     assert [stored.result for stored in read_limits(db).values()] == sorted(found, key=lambda one: one.trial)
-    limits(db, front.iloc[:1], jumps=21, seed=2, workers=1, progress=lambda *done: searched.append(done))
+    limits(db, front.iloc[:1], jumps=6, seed=2, workers=1, progress=lambda *done: searched.append(done))
     assert len(searched) == 3
 
 
+def lowest(db):
+    """The limit of the lowest jump of the front, which the command finds stored."""
+    data = read_study(db)
+    (one,) = limits(db, chosen(data, data.front(), (), 2).iloc[:1], jumps=24, workers=1)
+    return one
+
+
 def test_pick_tells_the_gap_of_a_design_that_was_searched(db):
-    trials = read_study(db).front()["trial"].tolist()
-    (one,) = limits(db, chosen(read_study(db), read_study(db).front(), trials[:1], 1), jumps=20, workers=1)
+    trials, one = read_study(db).front().sort_values("height_m")["trial"].tolist(), lowest(db)
     words = " ".join(CliRunner().invoke(cli, ["pick", str(db), "--trial", str(one.trial)]).stdout.split())
     assert f"the best torque found takes {one.controller_gap:.1f} % less for its height" in words
     printed = json.loads(CliRunner().invoke(cli, ["pick", str(db), "--trial", str(one.trial), "--json"]).stdout)
@@ -225,7 +232,7 @@ def test_pick_tells_the_gap_of_a_design_that_was_searched(db):
 
 
 def test_damage_to_a_stored_limit_is_found(db, tmp_path):
-    limits(db, read_study(db).front().iloc[:1], jumps=20, workers=1)
+    lowest(db)
     copy = shutil.copy(db, tmp_path / "copy.db")
     with closing(sqlite3.connect(copy)) as connection:
         connection.execute("UPDATE monoped_limits SET result = replace(result, 'energy_j', 'energy_J')")
@@ -241,7 +248,7 @@ def test_the_command_prints_a_table_of_eighty_columns_and_json(db):
     lines = done.stdout.splitlines()
     assert max(map(len, lines)) <= 80
     assert "gap %" in lines[1]
-    assert "2/2 designs, 0:00 left" in done.stderr
+    assert re.search(r"(1/1|2/2) designs, 0:00 left", done.stderr)
     printed = json.loads(CliRunner().invoke(cli, [*words, "--json"]).stdout)
     row = lines[2].split()
     first = printed["limits"][0]

@@ -5,12 +5,11 @@ import gc
 import importlib.util
 import sys
 
-import pytest
 from numba import types
 from numba.core.caching import NullCache
 
 from pareto_monoped.compute.compiled import c_function
-from pareto_monoped.jump import callback, controller, planar, torques
+from pareto_monoped.jump import controller, planar, torques
 
 MODULE = """
 from numba import carray
@@ -48,10 +47,4 @@ def test_what_is_kept_of_the_controller_calls_nothing_of_other_files():
                 kept.add(name)
                 used = [vars(module).get(one) for one in value.py_func.__code__.co_names]
                 assert {one.__module__ for one in used if hasattr(one, "py_func")} <= {module.__name__}
-    assert kept == {"between", "rebound"}
-
-
-@pytest.mark.parametrize("kept", [callback.called().py_func, callback._controller(1), planar.stepper().py_func])
-def test_what_is_kept_closes_over_numbers_alone(kept):
-    """A compiled function has another mark in every process: a trace was compiled anew in each, for six seconds."""
-    assert [type(cell.cell_contents) for cell in kept.__closure__] == [int]
+    assert kept == {"basis", "between", "rebound"}

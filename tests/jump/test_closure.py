@@ -28,7 +28,13 @@ def jumping(calibration):
     return RANDOM[Evaluator(MAP, calibration)(RANDOM).ok]
 
 
-@pytest.mark.parametrize(("name", "most"), [("reference", 8), ("reference-3", 30), ("paper", 30)])
+@pytest.mark.parametrize(
+    ("name", "most"),
+    [
+        *(("reference", 2), ("reference-3", 5), ("paper", 5)),
+        *(pytest.param(*one, marks=pytest.mark.long) for one in (("reference", 8), ("reference-3", 30), ("paper", 30))),
+    ],
+)
 def test_every_balance_is_that_of_the_jump_alone(name, most):
     calibration = load_calibration(name)
     designs = jumping(calibration)[:most]  # five times the steps where drives are elastic
@@ -42,14 +48,14 @@ def test_so_it_is_with_other_integrators(integrator, read):
     calibration = load_calibration("reference-3")
     simulation = replace(calibration.simulation, integrator=integrator, positions_read=read)
     calibration = replace(calibration, simulation=simulation)
-    designs = jumping(calibration)[:5]
+    designs = jumping(calibration)[:3]
     errors = balanced(robot_arrays(designs, MAP, calibration.mass), columns(designs, CONTROL), calibration).error
     np.testing.assert_allclose(errors, one_by_one(designs, calibration), rtol=0.0, atol=1e-12)
 
 
 def test_a_balance_does_not_depend_on_the_other_jumps_nor_on_the_workers():
     calibration = load_calibration()
-    designs = jumping(calibration)
+    designs = jumping(calibration)[:8]
     robots, control = robot_arrays(designs, MAP, calibration.mass), columns(designs, CONTROL)
     errors = balanced(robots, control, calibration).error
     np.testing.assert_array_equal(errors, balanced(robots, control, calibration, workers=2).error)

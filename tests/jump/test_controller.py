@@ -5,8 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.jump import controller
-from pareto_monoped.jump.controller_record import RECORD
+from pareto_monoped.jump import controller, single
+from pareto_monoped.jump.controller_record import RECORD, origin
+
+CONTROL = single._controller(origin())
+"""The controller as single jumps use it, which is found compiled on disk."""
 
 THIGH, SHANK, RADIUS, WEIGHT = 0.4, 0.4, 0.03, 30.0
 STIFFNESS, DAMPING, TORSION = 20.0, 3.0, 15.0
@@ -48,7 +51,7 @@ def torques(hip, knee, *, clearance=0.0, speeds=(0.0, 0.0), peak=1e6, fade=0.02,
     foot = -THIGH * np.cos(hip) - SHANK * np.cos(hip + knee)
     qpos, qvel = np.array([0.0, clearance + RADIUS - foot, hip, knee]), np.array([0.0, 0.1, *speeds])
     ctrl = np.zeros(2)
-    controller.control(qpos, qvel, ctrl, record)
+    CONTROL(qpos, qvel, ctrl, record)
     return np.array([*record["motor_torque_n_m"], *ctrl]), record["status"], record
 
 
@@ -241,6 +244,6 @@ def test_peak_speeds_and_clearance_are_those_of_the_flight_too():
     assert status == controller.FLYING
     assert record["peak_speed_rad_per_s"].tolist() == [7.0, 9.0]
     qpos, qvel = np.array([0.0, 1.0, -0.6, 1.2]), np.array([0.0, -0.1, 0.0, 0.0])
-    controller.control(qpos, qvel, np.zeros(2), record)
+    CONTROL(qpos, qvel, np.zeros(2), record)
     assert record["status"] == controller.APEX
     assert record["clearance_m"] == pytest.approx(1.0 + foot(-0.6, 1.2)[1] - RADIUS)

@@ -85,15 +85,15 @@ def test_a_design_of_which_half_the_copies_fail_does_not_jump():
 
 def test_a_study_under_paper_has_a_front_and_no_audit(tmp_path):
     """Its audit once took every design off the front of Case A."""
-    study = pm.Study.define(name="p", case="A", calibration="paper", evaluations=60, seed=3)
+    study = pm.Study.define(name="p", case="A", calibration="paper", evaluations=30, seed=3)
     assert (study.copies, study.audit, study.rules, study.strength) == (11, False, "paper", False)
     stored = pm.run(study, tmp_path / "p.db")
     assert len(stored.front()) > 1
-    assert pm.verify(stored, simulate=20).simulated == 20
+    assert pm.verify(stored, simulate=5).simulated == 5
     row = stored.pick("knee")
     assert row.row["height_m"] != pm.simulate(row.design, calibration="paper")["height_m"][0]
-    again = pm.resume(tmp_path / "p.db", evaluations=80)
-    whole = pm.run(pm.Study.define(name="p", case="A", calibration="paper", evaluations=80, seed=3), tmp_path / "w.db")
+    again = pm.resume(tmp_path / "p.db", evaluations=40)
+    whole = pm.run(pm.Study.define(name="p", case="A", calibration="paper", evaluations=40, seed=3), tmp_path / "w.db")
     assert again.trials.equals(whole.trials)
 
 

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numba
 import numpy as np
 import pytest
 
@@ -98,7 +99,11 @@ def test_so_it_is_on_thousands_of_designs(motor, which):
     the_same(wild_designs(200, seed=7), motor, CALIBRATIONS[which], share)
 
 
-def test_inverse_masses_are_mujocos():
+def test_inverse_masses_are_mujocos(monkeypatch):
+    """As Python: compiled for themselves they would take seconds, and jumps of both engines compare them compiled."""
+    for name, value in vars(planar).items():
+        if isinstance(value, numba.core.dispatcher.Dispatcher):
+            monkeypatch.setattr(planar, name, value.py_func)
     from pareto_monoped.jump.population import first_records
 
     for calibration in (ELASTIC, on_stand(ELASTIC), _RIGID):
@@ -111,7 +116,7 @@ def test_inverse_masses_are_mujocos():
         dofs = [z, z + 4, z + 3] if elastic else [z, z + 1, z + 2]
         joints = np.asarray(batch.expand("dof_invweight0"))[0, dofs]
         foot = np.asarray(batch.expand("body_invweight0"))[0, 3, 0]
-        record = first_records(robots, np.zeros((1, len(CONTROL))), calibration)[0]
+        record = first_records(robots, np.zeros((1, len(CONTROL))), calibration).view(np.recarray)[0]
         inverse, work = np.zeros(4), (np.zeros((4, 2)), np.zeros((4, 4)), np.zeros((4, 4)), np.zeros(6), np.zeros(6))
         planar._inverse_masses(guided, elastic, record, work, inverse)
         np.testing.assert_allclose(inverse, [*joints, foot], rtol=1e-9)

@@ -38,7 +38,7 @@ def model_of(robots, calibration, i=0):
     return model, mujoco.MjData(model)
 
 
-@pytest.mark.parametrize("case", [0, *(pytest.param(case, marks=pytest.mark.long) for case in (1, 2)), 3])
+@pytest.mark.parametrize("case", [*(pytest.param(case, marks=pytest.mark.long) for case in (0, 1, 2)), 3])
 @pytest.mark.parametrize(
     ("calibration", "within_m"),
     [
@@ -134,12 +134,12 @@ def potential_j(robots, i, height, hip, knee, moved_kg):
 
 
 def brute_j(robots, calibration, i, height):
-    """Least energy over poses one by one: of the whole ranges in steps of half a degree, then finer around the best."""
+    """Least energy over poses one by one: of the whole ranges in steps of a degree, then finer around the best."""
     ranges = [
         (-np.pi, np.pi) if stop is None else (stop.lower_rad - stop.width_rad, stop.upper_rad + stop.width_rad)
         for stop in end_stops(robots, calibration.joints)
     ]
-    boxes, count = ranges, 721
+    boxes, count = ranges, 361
     model, data = model_of(robots, calibration, i)
     moved_kg = model.body_mass.sum()
     for _ in range(4):
@@ -152,7 +152,7 @@ def brute_j(robots, calibration, i, height):
             (max(axis[at] - r, low), min(axis[at] + r, high))
             for axis, r, (low, high) in zip((hip, knee), reach, ranges, strict=True)
         ]
-        count = 201
+        count = 121
     mujoco.mj_resetDataKeyframe(model, data, 0)
     model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
     mujoco.mj_forward(model, data)
@@ -163,11 +163,11 @@ def brute_j(robots, calibration, i, height):
 @pytest.mark.parametrize("name", ["reference", "paper", "stand"])
 def test_the_least_energy_is_that_of_all_poses_tried_one_by_one(name):
     calibration = load_calibration(name)
-    designs = np.concatenate([CASES[[0, 3], :7], random_designs(2, seed=11)])
+    designs = np.concatenate([CASES[[0, 3], :7], random_designs(1, seed=11)])
     robots = robots_of(designs, calibration)
     for height in (0.56, 0.65, 0.8, 0.93, 1.2):
-        found = least_energy_j(robots, calibration, np.full(4, height))
-        tried = [brute_j(robots, calibration, i, height) for i in range(4)]
+        found = least_energy_j(robots, calibration, np.full(3, height))
+        tried = [brute_j(robots, calibration, i, height) for i in range(3)]
         np.testing.assert_allclose(found, tried, rtol=1e-3)
 
 
@@ -222,8 +222,8 @@ def profile_jump(model, data, torques, period_steps):
 def test_random_torques_do_not_undercut_the_least_energy():
     """Without losses, with MuJoCo's stops; benchmarks/least_energy.py tries more of them and looks for the best."""
     calibration, rng = load_calibration("ideal-3"), np.random.default_rng(5)
-    robots, shares = robots_of(random_designs(4, seed=21), calibration), []
-    for i in range(4):
+    robots, shares = robots_of(random_designs(2, seed=21), calibration), []
+    for i in range(2):
         model, data = model_of(robots, calibration, i)
         model.opt.timestep = 5e-4
         peak = model.actuator_ctrlrange[:, 1]
@@ -233,5 +233,5 @@ def test_random_torques_do_not_undercut_the_least_energy():
             least = least_energy_j(take(robots, np.array([i])), calibration, np.array([height]))[0]
             assert work > least - 1e-6
             shares += [work / least] if height > 0.55 else []
-    assert len(shares) >= 25
+    assert len(shares) >= 10
     assert min(shares) < 2.0

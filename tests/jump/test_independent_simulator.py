@@ -127,7 +127,18 @@ JUMPS = {
     "elastic": (np.vstack((CASES, RANDOM, OTHER)), {"calibration": "reference"}),
     "elastic, with play": (np.vstack((CASES, RANDOM)), {"calibration": "reference", "backlash_rad": 0.004}),
     "elastic, on the stand": (np.vstack((CASES, RANDOM, OTHER)), {"calibration": "stand"}),
+    "some, elastic": (np.vstack((CASES[3:], RANDOM[:2])), {"calibration": "reference"}),
+    "some, elastic, with play": (RANDOM[2:4], {"calibration": "reference", "backlash_rad": 0.004}),
+    "some, elastic, on the stand": (np.vstack((CASES[:1], RANDOM[4:5], OTHER[:1])), {"calibration": "stand"}),
 }
+EVERY_TIME = ("paper", "optional", "late", *(name for name in JUMPS if name.startswith("some")))
+
+
+def tried(names, every_time):
+    """Those not tried every time are long tests."""
+    return [pytest.param(name, marks=() if name in every_time else pytest.mark.long) for name in names]
+
+
 LOADS = (
     *("peak_gear_torque_hip_n_m", "peak_gear_torque_knee_n_m"),
     *("peak_chain_tension_n", "peak_stop_torque_n_m", "peak_foot_force_n"),
@@ -145,31 +156,26 @@ def compared(which, *, height_m, share, **fine):
     return found
 
 
-@pytest.mark.parametrize("which", JUMPS)
+@pytest.mark.parametrize("which", tried(JUMPS, EVERY_TIME))
 def test_the_simulation_is_the_documented_one(which):
     """Within what its step loses: 1 ms, or 0.2 ms where drives are elastic (docs/model.md)."""
     compared(which, height_m=0.6e-3, share=2e-3)
 
 
-@pytest.mark.parametrize(
-    "which",
-    [
-        pytest.param(name, marks=() if name in ("paper", "elastic, on the stand") else pytest.mark.long)
-        for name in JUMPS
-    ],
-)
+@pytest.mark.parametrize("which", tried(JUMPS, ("paper", "some, elastic, on the stand")))
 def test_both_converge_to_the_same_jump(which):
     """With a fine step in MuJoCo as well, what is left is the order of two methods: 0.3 um and 5e-6 of the energy.
 
     On the stand it is how friction sets in: here at once, there over some millimetres per second. Elastic drives let
     the base sink before it rises, so that the friction changes sides once more.
     """
-    height_m, share = {"stand": (1e-4, 3e-5), "elastic, on the stand": (1.3e-4, 8e-4)}.get(which, (3e-6, 3e-5))
+    stands = {"stand": (1e-4, 3e-5), "elastic, on the stand": (1.3e-4, 8e-4)}
+    height_m, share = stands.get(which.removeprefix("some, "), (3e-6, 3e-5))
     fine = {"engine": "mujoco", "integrator": "RK4", "positions_read": "state", "timestep_s": 5e-5}
     compared(which, height_m=height_m, share=share, **fine)
 
 
-@pytest.mark.parametrize("which", [name for name in JUMPS if "elastic" in name])
+@pytest.mark.parametrize("which", tried([name for name in JUMPS if "elastic" in name], EVERY_TIME))
 def test_loads_of_elastic_drives_are_those_of_the_documented_one(which):
     """With the step of 0.2 ms, at worst: gears of the hip 1.3 percent, foot 1.0, all else 0.35; with play 3.0."""
     designs, changes = JUMPS[which]
@@ -200,7 +206,7 @@ def landed_by_hand(designs, calibration):
 
 @pytest.mark.parametrize(
     ("timestep_s", "share", "count"),
-    [(2e-4, 0.012, 9), *(pytest.param(*how, 14, marks=pytest.mark.long) for how in ((2e-4, 0.012), (5e-5, 0.003)))],
+    [(2e-4, 0.012, 5), *(pytest.param(*how, 14, marks=pytest.mark.long) for how in ((2e-4, 0.012), (5e-5, 0.003)))],
 )
 def test_landings_are_the_documented_ones(timestep_s, share, count):
     """Peak loads of 14 designs by docs/landing.md.

@@ -36,7 +36,11 @@ def law(table):
     return law_of(table, source="test")
 
 
-@pytest.mark.parametrize("table", PROFILES, ids=lambda table: "-".join(map(str, table.values())))
+@pytest.mark.parametrize(
+    "table",
+    [pytest.param(table, marks=() if k in (0, 3, 4) else pytest.mark.long) for k, table in enumerate(PROFILES)],
+    ids=["-".join(map(str, table.values())) for table in PROFILES],
+)
 def test_both_engines_and_the_exported_replay_make_the_same_jump(table, tmp_path):
     calibration = load_calibration("reference").under(law(table))
     values, maps = PUSH.as_array(), map_for("VT8020")

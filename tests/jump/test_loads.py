@@ -19,7 +19,7 @@ SMOOTH = replace(REFERENCE, joints=replace(REFERENCE.joints, friction_n_m=0.0))
 STEP = REFERENCE.simulation.timestep_s
 
 
-EVERY = pytest.mark.parametrize("every", [3, pytest.param(1, marks=pytest.mark.long)])
+EVERY = pytest.mark.parametrize("every", [7, pytest.param(1, marks=pytest.mark.long)])
 """Which share of the designs jumps in the plain loop."""
 
 

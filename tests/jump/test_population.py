@@ -15,7 +15,7 @@ from tests.jump import oracle
 from tests.jump.robots import plausible_robots, random_designs
 
 
-@pytest.mark.parametrize("count", [40, pytest.param(100, marks=pytest.mark.long)])
+@pytest.mark.parametrize("count", [12, pytest.param(100, marks=pytest.mark.long)])
 def test_plain_mj_step_on_the_exported_model_agrees(count):
     """To 1e-9 on all random designs, as `reference-3` hardly amplifies rounding."""
     calibration, designs = load_calibration("reference-3"), random_designs(count, seed=7)
@@ -179,7 +179,7 @@ def test_inputs_are_not_changed(many):
 @pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "RK4"])
 def test_torque_is_held_during_a_step_whatever_the_integrator(integrator):
     """A Runge-Kutta step calls the callback four times; the oracle sets the torque once."""
-    calibration, designs = load_calibration("reference-3"), random_designs(8, seed=12)
+    calibration, designs = load_calibration("reference-3"), random_designs(4, seed=12)
     reads = "state" if integrator == "RK4" else "half_step_back"
     simulation = replace(calibration.simulation, integrator=integrator, positions_read=reads)
     calibration = replace(calibration, simulation=simulation)

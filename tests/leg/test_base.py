@@ -34,7 +34,10 @@ def discs(shape):
 
 
 @pytest.mark.parametrize("rules", RULE_SETS)
-@pytest.mark.parametrize("motor", motor_names())
+@pytest.mark.parametrize(
+    "motor",
+    [pytest.param(name, marks=() if name in ("VT8020", "MN8014") else pytest.mark.long) for name in motor_names()],
+)
 def test_the_round_holes_of_the_cheeks_keep_apart(motor, rules):
     found = {part.name: part for part in base_parts(0.06, leg_dimensions(map_for(motor, rules)))}
     for name in ("base_near_cheek", "base_far_cheek"):

@@ -40,7 +40,10 @@ def assert_same_robot(arrays, i, robot):
     assert (arrays.made_parts[i], arrays.bought_parts[i]) == (cost.made, cost.bought)
 
 
-@pytest.mark.parametrize("motor", motor_names())
+@pytest.mark.parametrize(
+    "motor",
+    [pytest.param(name, marks=() if name in ("VT8020", "MN8014") else pytest.mark.long) for name in motor_names()],
+)
 def test_a_population_is_the_robots_one_by_one(motor, designs):
     actuator_map = map_for(motor)
     arrays = robot_arrays(designs, actuator_map)

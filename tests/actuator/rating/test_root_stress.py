@@ -119,7 +119,9 @@ def stepped_bar_mpa(wide, radius, per_radius):
     return edge_stress_mpa(mesh, displaced_mm(mesh, forces, np.unique(mesh.edges[5])), 2)[2].max()
 
 
-@pytest.mark.parametrize(("wide", "radius"), [(2.0, 0.1), (2.0, 0.15), (2.0, 0.2)])
+@pytest.mark.parametrize(
+    ("wide", "radius"), [(2.0, 0.1), *(pytest.param(2.0, radius, marks=pytest.mark.long) for radius in (0.15, 0.2))]
+)
 def test_a_shoulders_notch_factor_is_petersons(wide, radius):
     """Pilkey, Peterson's Stress Concentration Factors, 2nd ed., chart 3.8: bending of a stepped flat bar, t / r > 2.
 
@@ -238,11 +240,11 @@ def cut_stress(tooth):
     ("tooth", "ratio", "bent", "tangent_deg"),
     [
         (SUN, 0.982, 1.081, 34.0),
-        (PLANET, 1.000, 1.084, 33.0),
-        (SHIFTED, 0.914, 1.050, 38.0),
+        pytest.param(PLANET, 1.000, 1.084, 33.0, marks=pytest.mark.long),
+        pytest.param(SHIFTED, 0.914, 1.050, 38.0, marks=pytest.mark.long),
         (SMALL, 0.884, 1.036, 36.0),
         (RING, 0.911, 1.021, 45.0),
-        (SHIFTED_RING, 0.895, 1.004, 46.0),
+        pytest.param(SHIFTED_RING, 0.895, 1.004, 46.0, marks=pytest.mark.long),
     ],
 )
 def test_root_stress_by_iso_is_within_what_its_neglect_of_compression_explains(tooth, ratio, bent, tangent_deg):
@@ -253,7 +255,7 @@ def test_root_stress_by_iso_is_within_what_its_neglect_of_compression_explains(t
     assert found.tangent_deg == pytest.approx(tangent_deg, abs=5.0)
 
 
-@pytest.mark.parametrize("tooth", [SUN, SMALL])
+@pytest.mark.parametrize("tooth", [SUN, pytest.param(SMALL, marks=pytest.mark.long)])
 def test_the_drawn_root_is_stressed_like_the_cut_one_and_finer_triangles_change_little(tooth):
     """The cut outline has small facets, which triangles as small would see as notches: hence 12 to a fillet there."""
     coarse, fine, finest = (tooth.stress(tooth.drawn_space(), per_fillet=count).greatest_mpa for count in (12, 24, 48))
@@ -262,7 +264,7 @@ def test_the_drawn_root_is_stressed_like_the_cut_one_and_finer_triangles_change_
     assert cut_stress(tooth).greatest_mpa == pytest.approx(finest, rel=0.006)
 
 
-@pytest.mark.parametrize("tooth", [SUN, RING])
+@pytest.mark.parametrize("tooth", [SUN, pytest.param(RING, marks=pytest.mark.long)])
 def test_what_holds_the_rim_is_far_enough_away(tooth):
     further = tooth.stress(tooth.cut_space(), rim=5.5, beside=2)
     assert cut_stress(tooth).greatest_mpa == pytest.approx(further.greatest_mpa, rel=0.008)

@@ -43,12 +43,12 @@ def keeps(stage, width):
 
 
 def test_it_is_the_first_of_all_widths_that_is_enough():
-    """Every multiple of 0.1 mm tried, one after the other, for 400 gear sets and a strong motor."""
-    stage = build_stage(drawn(400, 1), load_motor("U12"), "ESSPG", SETTINGS)
+    """Every multiple of 0.1 mm tried, one after the other, for 150 gear sets and a strong motor."""
+    stage = build_stage(drawn(150, 1), load_motor("U12"), "ESSPG", SETTINGS)
     found = least_width_mm(stage)
-    expected = np.full(400, np.nan)
+    expected = np.full(150, np.nan)
     for steps in range(int(np.max(stage.width_high_mm) / 0.1) + 1, 59, -1):
-        width = np.full(400, steps / 10.0)
+        width = np.full(150, steps / 10.0)
         inside = (width >= stage.width_low_mm - 1e-9) & (width <= stage.width_high_mm + 1e-9)
         expected = np.where(inside & keeps(stage, width), width, expected)
     possible = np.isfinite(expected)
@@ -99,16 +99,26 @@ WIDE = replace(
 """Faces so wide that misalignment eats what width gains."""
 
 
-@pytest.mark.parametrize("limits", [SETTINGS, WIDE], ids=["default", "wide"])
-@pytest.mark.parametrize("motor", ["U8", pytest.param("VT8020", marks=pytest.mark.long), "U12"])
-def test_no_set_goes_below_its_bound(motor, limits):
+BOUNDS = [
+    pytest.param("U12", SETTINGS, 300, id="U12-default"),
+    pytest.param("U8", WIDE, 60, id="U8-wide"),
+    *(
+        pytest.param(motor, limits, 300, id=f"{motor}-{name}-300", marks=pytest.mark.long)
+        for motor in ("U8", "VT8020", "U12")
+        for name, limits in (("default", SETTINGS), ("wide", WIDE))
+    ),
+]
+
+
+@pytest.mark.parametrize(("motor", "limits", "count"), BOUNDS)
+def test_no_set_goes_below_its_bound(motor, limits, count):
     """All widths tried, one after the other: the bounds assume that load factors grow with the width."""
-    stage = build_stage(drawn(300, 7), load_motor(motor), "ESSPG", limits)
+    stage = build_stage(drawn(count, 7), load_motor(motor), "ESSPG", limits)
     bounds, found = width_bounds(stage), least_width_mm(stage)
-    first, places = np.full(300, np.nan), np.arange(300)
+    first, places = np.full(count, np.nan), np.arange(count)
     steps = np.arange(int(np.max(stage.width_high_mm) / 0.1) + 1, 59, -1)
     for several in np.array_split(steps, np.ceil(len(steps) / 10)):  # at a time, which takes a third of the time
-        width = np.repeat(several / 10.0, 300).reshape(-1, 300)
+        width = np.repeat(several / 10.0, count).reshape(-1, count)
         rows = np.tile(places, len(several))
         kept = keeps(stage.rows(rows), width.ravel()).reshape(width.shape)
         for one, held in zip(width, kept, strict=True):
@@ -165,9 +175,11 @@ def test_a_limit_that_is_off_does_not_widen_the_gears():
 
 
 factors = st.floats(1.01, 1.5)
+FEWER = settings(max_examples=settings.default.max_examples // 4)
+"""Each example rates a hundred gear sets."""
 
 
-@settings(max_examples=15)
+@FEWER
 @given(factor=factors, seed=st.integers(0, 10_000))
 def test_more_torque_never_gives_a_thinner_face_or_more_safety(factor, seed):
     gears = drawn(100, seed)
@@ -180,7 +192,7 @@ def test_more_torque_never_gives_a_thinner_face_or_more_safety(factor, seed):
     assert (least_width_mm(after)[kept] >= width[kept]).all()
 
 
-@settings(max_examples=15)
+@FEWER
 @given(
     factor=factors,
     seed=st.integers(0, 10_000),

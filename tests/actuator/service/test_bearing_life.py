@@ -111,7 +111,9 @@ def test_the_hip_rests_in_two_bearings(vt_map):
 
 
 @pytest.mark.parametrize("rules", RULE_SETS)
-@pytest.mark.parametrize("name", motor_names())
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name == "VT8020" else pytest.mark.long) for name in motor_names()]
+)
 def test_every_winner_of_every_motor_has_a_sheet_of_finite_numbers(name, rules):
     actuator_map = map_of(load_motor(name), rules)
     for entry in actuator_map.entries:
