@@ -23,6 +23,8 @@ _CLOSE, _MOST_STEPS = 1e-13, 100
 """Of the logarithm of safety over required safety, where the search of a torque ends; it takes about ten steps."""
 _HIGHEST_SHARE = 50.0
 """Strikes are looked for up to this torque over the peak torque: twenty times what gears are rated for once."""
+_LOWEST_SHARE = 0.01
+"""And down to this one, which does no damage."""
 
 
 def strike_safeties(stage: Stage, width_mm: Numbers, share: Numbers, jumps: Numbers) -> tuple[Numbers, Numbers]:
@@ -67,8 +69,10 @@ def strike_shares(stage: Stage, width_mm: Floats, required: tuple[float, float])
         logs: Floats = np.log(least / np.array(required)[:, None])
         return logs
 
-    low = np.full((2, len(width_mm)), np.log(_usual_share(stage)))
-    high = np.full_like(low, np.log(_HIGHEST_SHARE))
+    usual = np.full((2, len(width_mm)), np.log(_usual_share(stage)))
+    # One more cycle of the duty's highest level in each jump is more than gears carry that are just wide enough for it.
+    less = spare(usual) < 0.0
+    low, high = np.where(less, np.log(_LOWEST_SHARE), usual), np.where(less, usual, np.log(_HIGHEST_SHARE))
     at_low, at_high = spare(low), spare(high)
     lasts, best = at_low >= 0.0, low
     moving = lasts
