@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from pareto_monoped.design import NAMES
 from pareto_monoped.jump.evaluate import Evaluator
@@ -15,7 +14,10 @@ from pareto_monoped.report.page import build, page
 from pareto_monoped.report.resimulation import resimulate
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.storage.reader import read_study
+from tests.lazily import Lazily
 from tests.report.conftest import made
+
+mpl = Lazily("matplotlib.figure")
 
 MOTORS = ("U8", "VT8020", "MN8014")
 TINTS = 6
@@ -118,7 +120,7 @@ def test_studies_share_maps_of_equal_motors_and_rules(several, source):
 
 def words_of_the_front(payload):
     """What the legends of the figure for print say."""
-    figure = Figure()
+    figure = mpl.Figure()
     assert front_figure(payload, figure)
     legends = [*figure.legends, *(axes.get_legend() for axes in figure.axes if axes.get_legend())]
     return {text.get_text() for legend in legends for text in legend.get_texts()}

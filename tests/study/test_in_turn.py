@@ -46,10 +46,11 @@ class Together(ThreadPoolExecutor):
 def test_robust_keeps_the_workers_busy_over_its_chunks(tmp_path, monkeypatch):
     """One chunk after the other ended with most of many workers idle."""
     monkeypatch.setattr(robustness, "_SHARED", 1)
+    monkeypatch.setattr(robustness, "LEAST_SAMPLES", 16)
     run(study_of(name="s", evaluations=16, audit=False, algorithm={"name": "random"}), tmp_path / "s.db", workers=2)
     trials = read_study(tmp_path / "s.db").trials.query("status == 'ok'")["trial"].tolist()[:3]
     (tmp_path / "t.db").write_bytes((tmp_path / "s.db").read_bytes())
-    done, settings = [], {"trials": trials, "samples": robustness.LEAST_SAMPLES}
+    done, settings = [], {"trials": trials, "samples": 16}
     with Together() as pool:
         there = robust(
             tmp_path / "t.db", load_uncertainty(), executor=pool, progress=lambda n, _: done.append(n), **settings
