@@ -25,9 +25,9 @@ TINTS = 6
 
 @pytest.fixture(scope="module")
 def several(folder):
-    algorithm = {"name": "random", "population": 60}
+    algorithm = {"name": "random", "population": 30}
     listed = {"gear_list": True, "rules": "iso6336", "motor": list(MOTORS)}
-    data = read_study(made(folder, name="any", evaluations=180, audit=False, algorithm=algorithm, **listed))
+    data = read_study(made(folder, name="any", evaluations=90, audit=False, algorithm=algorithm, **listed))
     assert data.front()["motor"].nunique() > 1
     return Source(data=data, resimulation=resimulate(data, most_jumps=4), models={})
 
@@ -68,19 +68,19 @@ def test_jumps_masses_and_cases_are_those_of_the_motor(several, payload):
 
 
 def test_pairs_of_motors_have_gearboxes_of_either_and_a_leg_of_both(folder):
-    listed = {"gear_list": True, "rules": "iso6336", "hip_motor": "U12", "knee_motor": ["VT8020", "U8"]}
+    listed = {"gear_list": True, "rules": "iso6336", "hip_motor": "VT8020", "knee_motor": ["U8", "MN8014"]}
     algorithm = {"name": "random", "population": 60}
     data = read_study(made(folder, name="pairs", evaluations=60, audit=False, algorithm=algorithm, **listed))
     again = resimulate(data, most_jumps=3)
     assert again.drift_m < 1e-9
     payload = build([Source(data=data, resimulation=again, models={})])
     (card,) = payload.studies
-    assert [table.motor for table in payload.maps] == ["U12", "VT8020", "U8"]
+    assert [table.motor for table in payload.maps] == ["VT8020", "U8", "MN8014"]
     assert [(kit.motor, kit.hip, kit.knee) for kit in payload.kits] == [
-        ("U12 hip, VT8020 knee", 0, 1),
-        ("U12 hip, U8 knee", 0, 2),
+        ("VT8020 hip, U8 knee", 0, 1),
+        ("VT8020 hip, MN8014 knee", 0, 2),
     ]
-    assert dict(card.motor_names) == {"0": ("U12", "VT8020"), "1": ("U12", "U8")}
+    assert dict(card.motor_names) == {"0": ("VT8020", "U8"), "1": ("VT8020", "MN8014")}
     trials = data.trials.set_index("trial")
     for row, trial in enumerate(card.trials.trial):
         stored, kit = trials.loc[trial], payload.kits[card.trials.columns["motor"][row]]

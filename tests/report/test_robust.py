@@ -6,7 +6,7 @@ from importlib import resources
 import numpy as np
 import pytest
 
-from pareto_monoped.analysis import limit, robustness
+from pareto_monoped.analysis import limit
 from pareto_monoped.analysis.alternatives import alternatives
 from pareto_monoped.analysis.robustness import robust, robust_front, robust_trials
 from pareto_monoped.analysis.sensitivity import sensitivity
@@ -23,12 +23,10 @@ ASSETS = resources.files("pareto_monoped") / "report" / "assets"
 
 
 @pytest.fixture(scope="module")
-def stored(folder):
+def stored(folder, few_samples):
     """A study of its own: the database of the others stays as it is."""
     db = made(folder, seed=11, evaluations=60)
-    with pytest.MonkeyPatch.context() as patch:  # of few robots as built, whose numbers the page repeats
-        patch.setattr(robustness, "LEAST_SAMPLES", 32)
-        robust(db, load_uncertainty(), trials=read_study(db).front()["trial"].tolist()[:4], samples=32, workers=2)
+    robust(db, load_uncertainty(), trials=read_study(db).front()["trial"].tolist()[:4], samples=32, workers=2)
     return read_robustness(db)
 
 
@@ -38,7 +36,7 @@ def searched(folder, stored):
     db = folder / "surrogate_11_60.db"
     with pytest.MonkeyPatch.context() as patch:  # few robots as built, of which the page tells nothing
         patch.setattr(limit, "sampling", lambda *_: (load_uncertainty(), 16, 1))
-        limit.limits(db, read_study(db).front().iloc[:4], jumps=60, workers=2)
+        limit.limits(db, read_study(db).front().iloc[:3], jumps=40, workers=2)
     return read_limits(db)
 
 
@@ -190,7 +188,7 @@ def test_the_page_tells_numerical_and_physical_tests_apart(shown, stored, search
             known = stored[trial].result
             low, high = (getattr(known.measures["height_m"], end) for end in ("p05", "p95"))
             tab.expects(
-                "#audit", f"Tested as built in 256 jumps, nine of ten robots: height {low:.3f} m to {high:.3f} m"
+                "#audit", f"Tested as built in 32 jumps, nine of ten robots: height {low:.3f} m to {high:.3f} m"
             )
             tab.expects("#audit", f"{100 * known.failed:.1f} % of the jumps fail")
             tab.expects("#audit", f"{100 * known.overloaded:.1f} % overload a part")
