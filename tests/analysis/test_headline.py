@@ -17,7 +17,7 @@ from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 @pytest.fixture(scope="module")
 def simulated():
     """Case C as the study below simulates it."""
-    jump = Evaluator(map_for("VT8020"), load_calibration("ideal"))(PAPER_CASES["C"].design.as_array())
+    jump = Evaluator(map_for("U8"), load_calibration("ideal"))(PAPER_CASES["C"].design.as_array())
     return {name: float(jump.of(name)[0]) for name in MEASURE_NAMES}
 
 
@@ -33,7 +33,7 @@ def study(*front, motors=("U8",)):
         front=lambda: table[table["trial"] != 1],
         sound=table,
         study=SimpleNamespace(objectives=HEIGHT_AND_ENERGY, kits=[(name, name) for name in motors]),
-        case_kit=joint_maps(map_for("VT8020")),
+        case_kit=joint_maps(map_for("U8")),
         calibration=load_calibration("ideal"),
     )
 

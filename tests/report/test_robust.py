@@ -36,7 +36,7 @@ def searched(folder, stored):
     db = folder / "surrogate_11_60.db"
     with pytest.MonkeyPatch.context() as patch:  # few robots as built, of which the page tells nothing
         patch.setattr(limit, "sampling", lambda *_: (load_uncertainty(), 16, 1))
-        limit.limits(db, read_study(db).front().iloc[:3], jumps=40, workers=2)
+        limit.limits(db, read_study(db).front().iloc[:4], jumps=60, workers=2)
     return read_limits(db)
 
 
