@@ -40,7 +40,7 @@ LIGHT = pm.Design.from_array([0.5, 0.5, 5.2, 4.09, 5.0, 5.0, 0.0]).as_array()
 
 @cache
 def few():
-    return sobol_samples(load_uncertainty(), 32)
+    return sobol_samples(load_uncertainty(), 64)
 
 
 @pytest.fixture(scope="module")
