@@ -108,6 +108,15 @@ def made_once(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, Callab
     return made
 
 
+@pytest.fixture(scope="module")
+def few_samples() -> Iterator[None]:
+    """From here on in a module, commands and the library let 32 robots as built jump where they would take 256."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("LEAST_SAMPLES", "DEFAULT_SAMPLES"):
+            patch.setattr(f"pareto_monoped.analysis.robustness.{name}", 32)
+        yield
+
+
 @contextmanager
 def without_checks() -> Iterator[None]:
     """Exports of this process leave out the checks of the machine, and the solids that nothing but checks looks at."""

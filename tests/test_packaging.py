@@ -21,9 +21,15 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 SOURCE = "https://example.org/someone/pareto_monoped"
 
-_spec = importlib.util.spec_from_file_location("of_setuptools", ROOT / "setup.py")
-packaging = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(packaging)
+
+@pytest.fixture(scope="module")
+def packaging():
+    """What ``setup.py`` defines."""
+    spec = importlib.util.spec_from_file_location("of_setuptools", ROOT / "setup.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
 
 TARGET = re.compile(r'!?\[[^\]]+\]\(([^)#]+)|<img src="([^"]+)')
 
@@ -42,7 +48,7 @@ def test_what_is_installed_runs_on_every_python_that_the_readme_names():
     assert {name: of for name, of in wanted.items() if of and least not in SpecifierSet(of)} == {}
 
 
-def test_with_an_address_all_links_and_pictures_of_the_readme_lead_to_files_there():
+def test_with_an_address_all_links_and_pictures_of_the_readme_lead_to_files_there(packaging):
     shown = targets(packaging.for_an_index(README, SOURCE + "/", "1.2.3"))
     assert len(shown) == len(targets(README)) > 10
     for target, there in zip(shown, targets(README), strict=True):
@@ -54,7 +60,7 @@ def test_with_an_address_all_links_and_pictures_of_the_readme_lead_to_files_ther
         assert (ROOT / there).exists()
 
 
-def test_without_an_address_nothing_of_the_readme_is_broken():
+def test_without_an_address_nothing_of_the_readme_is_broken(packaging):
     shown = packaging.for_an_index(README, None, "1.2.3")
     assert [target for target in targets(shown) if not target.startswith("http")] == []
     assert "pictures are in the source distribution" in shown
@@ -63,7 +69,7 @@ def test_without_an_address_nothing_of_the_readme_is_broken():
     assert packaging.for_an_index("# a\n\ntext\n", None, "1") == "# a\n\ntext\n"
 
 
-def test_the_address_has_one_place(monkeypatch, tmp_path):
+def test_the_address_has_one_place(packaging, monkeypatch, tmp_path):
     """Written into [project.urls], it is all that a release needs."""
     for name in ("README.md", "pyproject.toml", "pareto_monoped/__init__.py"):
         (tmp_path / name).parent.mkdir(exist_ok=True)

@@ -104,11 +104,11 @@ def test_the_resistance_of_a_phase_is_half_of_that_between_terminals(vt8020):
 def test_jumps_use_the_line_to_line_resistance():
     """The M6C12's data sheet gives that of a phase: the simulation's is twice as large."""
     design = PAPER_CASES["C"].design.replace({"knee_ratio": 6.0, "hip_ratio": 5.0}).as_array()
-    published = map_for("MAD_M6C12").motor
+    published = map_for("MAD_M6C12", "paper").motor
     assert (published.winding_resistance_ohm, published.winding_resistance_kind) == (0.063, "phase")
-    assert robot_arrays(design, map_for("MAD_M6C12")).winding_resistance_ohm.tolist() == [[0.126, 0.126]]
+    assert robot_arrays(design, map_for("MAD_M6C12", "paper")).winding_resistance_ohm.tolist() == [[0.126, 0.126]]
     measured = replace(published, winding_resistance_kind="line_to_line", winding_resistance_ohm=0.99 / 7.872)
-    few = build_map(measured, ActuatorSettings(modules_mm=(0.5, 0.6)))
+    few = build_map(measured, ActuatorSettings(rules="paper", modules_mm=(0.5, 0.6)))
     assert robot_arrays(design, few).winding_resistance_ohm == pytest.approx(0.126, rel=0.003)
 
 

@@ -6,6 +6,7 @@ import shutil
 import sqlite3
 from contextlib import closing
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -37,7 +38,9 @@ REFERENCE = load_calibration("reference")
 LIGHT = pm.Design.from_array([0.5, 0.5, 5.2, 4.09, 5.0, 5.0, 0.0]).as_array()
 
 
-FEW = sobol_samples(load_uncertainty(), 64)
+@cache
+def few():
+    return sobol_samples(load_uncertainty(), 64)
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +48,7 @@ def found():
     """With more jumps for the tracking law than it has of so few."""
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(module, "_SHARE", 2)
-        return limit_of(LIGHT, map_for("VT8020"), REFERENCE, jumps=200, workers=2, samples=FEW)
+        return limit_of(LIGHT, map_for("VT8020"), REFERENCE, jumps=200, workers=2, samples=few())
 
 
 @pytest.fixture(autouse=True)
@@ -100,8 +103,8 @@ def test_robots_as_built_are_those_of_robust(found):
     least = dict.fromkeys(REQUIRED_MEASURES, 1.0)
     for reached in (found.over_time, found.tracking):
         model = REFERENCE.under(law_of(reached.controller, source="test"))
-        designs = np.repeat(pm.Design(**reached.design).as_array()[None], len(FEW), axis=0)
-        jumps = Evaluator(map_for("VT8020"), model, 2)(designs, variations=variations(FEW, 1, model))
+        designs = np.repeat(pm.Design(**reached.design).as_array()[None], len(few()), axis=0)
+        jumps = Evaluator(map_for("VT8020"), model, 2)(designs, variations=variations(few(), 1, model))
         known, perturbed = robustness(jumps, slice(None), least), reached.perturbed
         ends = np.quantile(np.where(jumps.ok, jumps.height_m, 0.0), (0.05, 0.95))
         assert (perturbed.p05_m, perturbed.p95_m) == pytest.approx(tuple(ends), rel=1e-12)
@@ -139,7 +142,7 @@ def test_a_search_of_no_jumps_leaves_the_virtual_leg(case, holds):
     """The design's own jump is among the candidates, and among those that hold if it does."""
     design = PAPER_CASES[case].design
     one, own = (
-        limit_of(design.as_array(), map_for("VT8020"), REFERENCE, jumps=0, samples=FEW),
+        limit_of(design.as_array(), map_for("VT8020"), REFERENCE, jumps=0, samples=few()),
         pm.simulate(design).iloc[0],
     )
     assert all(own[name] >= 1.0 for name in REQUIRED_MEASURES) is holds
@@ -154,7 +157,7 @@ def test_a_jump_counts_that_presses_no_bumper_beyond_a_limit(monkeypatch, found)
     free = pm.simulate(found.greatest.design, controller=found.greatest.controller).iloc[0]
     assert free.stop_compression_knee > 0.4
     monkeypatch.setattr(module, "_COMPRESSION", 0.4)
-    one = limit_of(LIGHT, map_for("VT8020"), REFERENCE, jumps=240, samples=FEW)
+    one = limit_of(LIGHT, map_for("VT8020"), REFERENCE, jumps=240, samples=few())
     kept = pm.simulate(one.greatest.design, controller=one.greatest.controller).iloc[0]
     assert (
         one.greatest.controller == {"kind": "virtual_leg"}
@@ -164,9 +167,9 @@ def test_a_jump_counts_that_presses_no_bumper_beyond_a_limit(monkeypatch, found)
 
 @pytest.mark.long
 def test_the_number_of_workers_changes_no_number():
-    one, other = (limit_of(LIGHT, map_for("VT8020"), REFERENCE, jumps=48, workers=n, samples=FEW) for n in (1, 2))
+    one, other = (limit_of(LIGHT, map_for("VT8020"), REFERENCE, jumps=48, workers=n, samples=few()) for n in (1, 2))
     assert one.as_dict() == other.as_dict()
-    assert limit_of(LIGHT, map_for("VT8020"), REFERENCE, jumps=48, seed=2, samples=FEW).as_dict() != one.as_dict()
+    assert limit_of(LIGHT, map_for("VT8020"), REFERENCE, jumps=48, seed=2, samples=few()).as_dict() != one.as_dict()
 
 
 def test_the_knots_begin_near_the_jump_of_the_virtual_leg():

@@ -119,6 +119,7 @@ def test_lists_of_objectives_may_be_arrays_and_indices(stored, tmp_path):
     assert (study.objectives.names, study.constraints.value("max_mass_kg")) == (tuple(names), 6.0)
 
 
+@pytest.mark.usefixtures("few_samples")
 def test_robust_takes_a_column_of_trials(stored):
     trials = stored.front()["trial"].iloc[:2]
     known = pm.robust(stored, trials.tolist())

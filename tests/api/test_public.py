@@ -99,6 +99,7 @@ def test_every_table_is_described_where_help_looks_and_has_an_example(name):
         assert name in example.partition("DATA")[0]
 
 
+@pytest.mark.usefixtures("few_samples")
 @pytest.mark.parametrize("home", ["", *pm._HOMES])
 def test_the_examples_do_what_they_show(home, folder, tmp_path, monkeypatch):
     (tmp_path / "studies").symlink_to(ROOT / "studies")

@@ -39,6 +39,7 @@ def test_verify_finds_what_the_command_finds(stored, capsys):
         pm.verify(stored, expect="no")
 
 
+@pytest.mark.usefixtures("few_samples")
 def test_robust_takes_an_executor_and_a_robust_pick_is_that_of_the_command(stored, capsys):
     with pytest.raises(SelectionError, match="holds no robustness"):
         stored.pick("knee", robust=True)

@@ -42,7 +42,7 @@ HEAVY = {"export", "export_trial", "film"}
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
+def made(few_samples, tmp_path_factory):
     """Arguments that each function takes, and the folder of what they name."""
     folder = tmp_path_factory.mktemp("right")
     tiny = {"name": "tiny", "evaluations": 4, "algorithm": "random", "audit": False}

@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from pareto_monoped.cad.kernel import process
-from pareto_monoped.cad.kernel.process import step_files
-from pareto_monoped.cad.kernel.solids import solid_from
 from pareto_monoped.cad.product import build_product, step_assembly
 from pareto_monoped.geometry.roles import Role
+from tests.lazily import Lazily
+
+process = Lazily("pareto_monoped.cad.kernel.process")
+solids = Lazily("pareto_monoped.cad.kernel.solids")
 
 _EXPORTS = """
 import sys
@@ -42,10 +43,10 @@ def test_step_files_of_both_actuators_come_out_the_same_twice(product):
     )
     actuators = build_product(dataclasses.replace(product.robot, units=units), product.pose)
     assembly = step_assembly(actuators, "monoped")
-    one = step_files(assembly)
-    solid_from.cache_clear()
+    one = process.step_files(assembly)
+    solids.solid_from.cache_clear()
     process._part_file.cache_clear()
-    assert step_files(assembly) == one
+    assert process.step_files(assembly) == one
 
 
 @pytest.mark.long

@@ -87,7 +87,9 @@ def test_a_worker_with_another_cad_package_makes_no_exports(tmp_path, capsys):
     assert not (tmp_path / "out").exists()
 
 
-def test_run_resume_robust_sensitivity_and_verify_have_their_jumps_made_there(tmp_path, monkeypatch, capsys):
+def test_run_resume_robust_sensitivity_and_verify_have_their_jumps_made_there(
+    few_samples, tmp_path, monkeypatch, capsys
+):
     """The results are the same wherever they are made, so the tasks are counted. One process serves all commands."""
     given, asked = [], []
 
@@ -108,7 +110,7 @@ def test_run_resume_robust_sensitivity_and_verify_have_their_jumps_made_there(tm
     for words in (
         ["run", str(file), "--db", db, "--json"],
         ["resume", db, "--evaluations", "30", "--json"],
-        ["robust", db, "--trial", "{trial}", "--samples", "256"],
+        ["robust", db, "--trial", "{trial}"],
         ["sensitivity", db, "--trial", "{trial}", "--samples", "32"],
         ["verify", db, "--simulate", "3"],
     ):

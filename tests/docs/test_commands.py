@@ -75,7 +75,7 @@ LESS = {
     "export": ("--formats", "dxf"),  # its files and its checks are those that other tests look at; here are its parts
     "run studies/quick.toml": ("--evaluations", "300"),  # of a search, only words are compared
     "robust": ("--every", "20"),  # of a front that has a quarter of the designs
-    "run studies/robust.toml": ("--evaluations", "10"),
+    "run studies/robust.toml": ("--evaluations", "3"),
     "run studies/case_c.toml": ("--evaluations", "120"),
 }
 """Beginnings of commands that are run with further words, since they take long as they are shown."""
@@ -85,7 +85,7 @@ LONG = {"studies.md"}
 """Pages whose commands take as long as those of all others: a campaign over motors, with its report."""
 
 
-@pytest.mark.usefixtures("unchecked")
+@pytest.mark.usefixtures("unchecked", "few_samples")
 @pytest.mark.parametrize(
     "page",
     [

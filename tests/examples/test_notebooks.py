@@ -4,11 +4,11 @@ import os
 import sys
 from pathlib import Path
 
-import nbformat
 import pytest
-from jupyter_client import KernelManager
-from nbclient import NotebookClient
 
+from tests.lazily import Lazily
+
+nbformat, nbclient, jupyter = Lazily("nbformat"), Lazily("nbclient"), Lazily("jupyter_client")
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "notebooks").glob("*.ipynb"))
 SHOWS = {
     "tour": {"1.05  ": 1, "robot: 4.77 kg": 1, "feasible": 1, "the knee": 1, "own_load_factor": 1, "(400, ": 1},
@@ -41,7 +41,7 @@ def test_a_notebook_is_kept_as_it_is_read(path):
 def kernel(tmp_path_factory):
     """One kernel for all notebooks, which takes seconds to import everything, and the folder in which it works."""
     folder = tmp_path_factory.mktemp("notebooks")
-    manager = KernelManager(kernel_name="python3")
+    manager = jupyter.KernelManager(kernel_name="python3")
     manager.start_kernel(cwd=folder, env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))})
     yield manager, folder
     manager.shutdown_kernel(now=True)
@@ -54,7 +54,7 @@ def test_a_notebook_runs(path, kernel):
     manager, folder = kernel
     notebook = nbformat.read(path, as_version=4)
     notebook.cells.insert(0, nbformat.v4.new_code_cell("%reset -f"))  # it has no name of another notebook
-    client = NotebookClient(notebook, km=manager, timeout=600)
+    client = nbclient.NotebookClient(notebook, km=manager, timeout=600)
     client.execute()
     client.kc.stop_channels()
     made = outputs(notebook)

@@ -38,7 +38,7 @@ def pool():
 @pytest.fixture(scope="module")
 def maps():
     """Two kits of motors."""
-    first, second = map_for("U8"), map_for("MN8014")
+    first, second = map_for("VT8020"), map_for("U8")
     return JointMaps(hip=first, knee=first), JointMaps(hip=second, knee=first)
 
 

@@ -19,18 +19,18 @@ PULLEYS = (
     Pulley(x_mm=5.0, y_mm=50.0, radius_mm=6.0),
 )
 OUTLINES = {
-    "around three pulleys and a fillet": belt(PULLEYS),
-    "its mirror image": belt(mirrored(PULLEYS)),
-    "short thigh": thigh_outline(55.0, 250.0, leg_dimensions(map_for("VT8020"))),
-    "long thigh of a wide motor": thigh_outline(63.9, 550.0, leg_dimensions(map_for("U12"))),
-    "rounded": rounded(half_width_mm=16.0, high_mm=-60.0, low_mm=-150.0, corner_mm=6.0),
-    "sprocket": sprocket_outline(CHAIN_DRIVES[0]),
+    "around three pulleys and a fillet": lambda: belt(PULLEYS),
+    "its mirror image": lambda: belt(mirrored(PULLEYS)),
+    "short thigh": lambda: thigh_outline(55.0, 250.0, leg_dimensions(map_for("VT8020"))),
+    "long thigh of a wide motor": lambda: thigh_outline(63.9, 550.0, leg_dimensions(map_for("U12"))),
+    "rounded": lambda: rounded(half_width_mm=16.0, high_mm=-60.0, low_mm=-150.0, corner_mm=6.0),
+    "sprocket": lambda: sprocket_outline(CHAIN_DRIVES[0]),
 }
 
 
 @pytest.mark.parametrize("name", OUTLINES)
 def test_outlines_close_and_enclose_what_a_polygon_does(name):
-    path = OUTLINES[name]
+    path = OUTLINES[name]()
     drawn = polygon(path)
     assert drawn.is_valid, shapely.is_valid_reason(drawn)
     assert drawn.exterior.is_ccw
@@ -50,7 +50,7 @@ def test_each_piece_begins_where_the_last_one_ended(name):
             ]
         return [(piece.x0_mm, piece.y0_mm), (piece.x1_mm, piece.y1_mm)]
 
-    pieces = OUTLINES[name].pieces
+    pieces = OUTLINES[name]().pieces
     for one, following in zip(pieces, (*pieces[1:], pieces[0]), strict=False):
         assert ends(one)[1] == pytest.approx(ends(following)[0], abs=1e-9)
 

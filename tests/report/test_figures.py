@@ -3,11 +3,8 @@ import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 from importlib import resources
 
-import matplotlib
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES
@@ -24,6 +21,10 @@ from pareto_monoped.report.figures import (
 )
 from pareto_monoped.report.front_figure import JOINTS, STYLES, front_figure
 from pareto_monoped.report.packing import unpacked
+from tests.lazily import Lazily
+
+matplotlib, agg = Lazily("matplotlib"), Lazily("matplotlib.backends.backend_agg")
+mpl = Lazily("matplotlib.figure")
 
 NAMES = ("front", "convergence", "along_the_front", "mass_over_ratio", "link_mass", "states_over_time")
 
@@ -55,10 +56,10 @@ def test_the_legend_of_the_front_lies_within_the_figure(payload):
     """It was cut off at the right for two studies with long names."""
     names = ("case_c by mechanical energy", "case_c by battery energy")
     long = tuple(replace(payload.studies[0], label=name) for name in names)
-    figure = Figure(figsize=(3.5, 2.6), layout="constrained")
+    figure = mpl.Figure(figsize=(3.5, 2.6), layout="constrained")
     with matplotlib.rc_context({"legend.fontsize": 7.0}):
         assert front_figure(replace(payload, studies=long), figure)
-    FigureCanvasAgg(figure).draw()
+    agg.FigureCanvasAgg(figure).draw()
     legends = [*figure.legends, *(axes.get_legend() for axes in figure.axes if axes.get_legend())]
     for legend in legends:
         box = legend.get_window_extent()
@@ -69,7 +70,7 @@ def test_the_legend_of_the_front_lies_within_the_figure(payload):
 
 @pytest.fixture
 def front_axes(payload):
-    figure = Figure()
+    figure = mpl.Figure()
     assert front_figure(payload, figure)
     (axes,) = figure.axes
     return axes
@@ -103,7 +104,7 @@ def test_the_front_figure_begins_at_the_start_height_and_holds_every_mark(front_
 
 def test_the_floor_is_the_least_of_all_studies(payload):
     (card,) = payload.studies
-    figure = Figure()
+    figure = mpl.Figure()
     lower = [max(energy - 1.0, 0.0) for energy in card.floor_j]
     front_figure(replace(payload, studies=[card, replace(card, floor_j=lower), replace(card, floor_j=[])]), figure)
     (floor,) = (line for line in figure.axes[0].lines if line.get_label().startswith("physical"))
@@ -116,7 +117,7 @@ def test_states_over_time_are_those_of_the_knees_jump(payload):
     row = card.picks[0].row
     assert {card.trials.trial[one.row] for one in card.picks} <= set(card.jumps.keys)  # also one behind the front
     data = _states_data(card, row)
-    figure = Figure()
+    figure = mpl.Figure()
     _states(payload, figure)
     columns = [
         ("hip_motor_torque_n_m", "knee_motor_torque_n_m"),
@@ -136,7 +137,7 @@ def test_states_over_time_are_those_of_the_knees_jump(payload):
 def test_the_torques_stand_between_the_limits_of_their_gearboxes_in_the_pages_colours(payload):
     (card,) = payload.studies
     row = card.picks[0].row
-    figure = Figure()
+    figure = mpl.Figure()
     _states(payload, figure)
     torques = figure.axes[0]
     for joint, line in zip(("hip", "knee"), torques.lines, strict=False):
@@ -148,9 +149,9 @@ def test_the_torques_stand_between_the_limits_of_their_gearboxes_in_the_pages_co
 
 def test_no_legend_covers_data(both):
     for make in (front_figure, _links, _states, _map, _convergence, _along):
-        figure = Figure(figsize=(3.5, 2.6), layout="constrained")
+        figure = mpl.Figure(figsize=(3.5, 2.6), layout="constrained")
         assert make(both, figure)
-        canvas = FigureCanvasAgg(figure)
+        canvas = agg.FigureCanvasAgg(figure)
         canvas.draw()
         renderer = canvas.get_renderer()
         legends = [legend for legend in (*figure.legends, *(axes.get_legend() for axes in figure.axes)) if legend]
@@ -171,7 +172,7 @@ def test_colours_are_the_pages():
 
 
 def test_variables_along_the_front_are_in_their_shown_units(payload, data):
-    figure = Figure()
+    figure = mpl.Figure()
     _along(payload, figure)
     thigh = figure.axes[0].lines[0]
     np.testing.assert_allclose(thigh.get_ydata(), 1000.0 * data.front()["thigh_length_m"], rtol=1e-4)
@@ -179,7 +180,7 @@ def test_variables_along_the_front_are_in_their_shown_units(payload, data):
 
 
 def test_link_masses_have_a_line_per_motor(both):
-    figure = Figure()
+    figure = mpl.Figure()
     _links(both, figure)
     labels = [line.get_label() for line in figure.axes[0].lines]
     assert labels == ["thigh, VT8020", "shank, VT8020", "thigh, U12", "shank, U12"]

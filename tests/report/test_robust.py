@@ -23,10 +23,10 @@ ASSETS = resources.files("pareto_monoped") / "report" / "assets"
 
 
 @pytest.fixture(scope="module")
-def stored(folder):
+def stored(folder, few_samples):
     """A study of its own: the database of the others stays as it is."""
     db = made(folder, seed=11, evaluations=60)
-    robust(db, load_uncertainty(), trials=read_study(db).front()["trial"].tolist()[:4], workers=2)
+    robust(db, load_uncertainty(), trials=read_study(db).front()["trial"].tolist()[:4], samples=32, workers=2)
     return read_robustness(db)
 
 
@@ -54,7 +54,7 @@ def shown(uncertain):
 def test_the_page_has_what_is_stored(shown, uncertain, stored):
     card = shown.studies[0]
     assert [card.trials.trial[row] for row in card.robust.rows] == sorted(stored)
-    assert (card.robust.ranges, card.robust.samples, card.robust.others) == ("default", 256, 0)
+    assert (card.robust.ranges, card.robust.samples, card.robust.others) == ("default", 32, 0)
     known = [stored[trial].result for trial in sorted(stored)]
     for name in ("height_m.p05", "energy_j.p95", "mass_kg.mean"):
         base, _, statistic = name.partition(".")
@@ -188,7 +188,7 @@ def test_the_page_tells_numerical_and_physical_tests_apart(shown, stored, search
             known = stored[trial].result
             low, high = (getattr(known.measures["height_m"], end) for end in ("p05", "p95"))
             tab.expects(
-                "#audit", f"Tested as built in 256 jumps, nine of ten robots: height {low:.3f} m to {high:.3f} m"
+                "#audit", f"Tested as built in 32 jumps, nine of ten robots: height {low:.3f} m to {high:.3f} m"
             )
             tab.expects("#audit", f"{100 * known.failed:.1f} % of the jumps fail")
             tab.expects("#audit", f"{100 * known.overloaded:.1f} % overload a part")

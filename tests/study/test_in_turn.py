@@ -43,13 +43,13 @@ class Together(ThreadPoolExecutor):
         return function(*arguments)
 
 
-def test_robust_keeps_the_workers_busy_over_its_chunks(tmp_path, monkeypatch):
+def test_robust_keeps_the_workers_busy_over_its_chunks(few_samples, tmp_path, monkeypatch):
     """One chunk after the other ended with most of many workers idle."""
     monkeypatch.setattr(robustness, "_SHARED", 1)
     run(study_of(name="s", evaluations=16, audit=False, algorithm={"name": "random"}), tmp_path / "s.db", workers=2)
     trials = read_study(tmp_path / "s.db").trials.query("status == 'ok'")["trial"].tolist()[:3]
     (tmp_path / "t.db").write_bytes((tmp_path / "s.db").read_bytes())
-    done, settings = [], {"trials": trials, "samples": robustness.LEAST_SAMPLES}
+    done, settings = [], {"trials": trials, "samples": 32}
     with Together() as pool:
         there = robust(
             tmp_path / "t.db", load_uncertainty(), executor=pool, progress=lambda n, _: done.append(n), **settings
@@ -60,12 +60,12 @@ def test_robust_keeps_the_workers_busy_over_its_chunks(tmp_path, monkeypatch):
 
 
 def test_robust_objectives_keep_the_workers_busy_over_their_chunks(monkeypatch):
-    monkeypatch.setattr(samples, "_JUMPS", 64)
+    monkeypatch.setattr(samples, "_JUMPS", 16)
     designs = np.array([PAPER_CASES[name].design.as_array() for name in ("A", "B", "C")])
     gearboxes, calibration = map_for(PAPER_MOTOR), load_calibration()
     names, sampling = (
         ("height_m.p05", "failed_share", "overloaded_share"),
-        Sampling(ranges=load_uncertainty(), samples=64, seed=1),
+        Sampling(ranges=load_uncertainty(), samples=16, seed=1),
     )
     with Together() as pool:
         shared = SharedEvaluator(gearboxes, calibration, executor=pool)

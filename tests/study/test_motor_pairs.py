@@ -2,6 +2,7 @@
 
 import json
 import sqlite3
+from functools import cache
 from itertools import product
 from types import SimpleNamespace
 
@@ -40,8 +41,14 @@ def coordinates_for(study):
     return searched_coordinates(study, kit_maps(study, maps))
 
 
-COORDINATES = coordinates_for(pairs())
-ONE_SIDE = coordinates_for(pairs(hip="U12"))
+@cache
+def both_chosen():
+    return coordinates_for(pairs())
+
+
+@cache
+def knee_chosen():
+    return coordinates_for(pairs(hip="U12"))
 
 
 @pytest.mark.parametrize(
@@ -100,10 +107,11 @@ def test_two_different_motors_need_no_choice_and_any_algorithm_takes_them():
 
 @settings(max_examples=60, deadline=None)
 @given(
-    st.sampled_from([COORDINATES, ONE_SIDE]),
+    st.sampled_from([both_chosen, knee_chosen]),
     st.lists(st.lists(st.floats(0.0, 1.0), min_size=9, max_size=9), min_size=1, max_size=8),
 )
 def test_coordinates_and_designs_are_each_others_inverse(where, unit):
+    where = where()
     space = where.space
     lower, upper = space.edges
     values = space.snap(lower + np.array(unit)[:, : len(lower)] * (upper - lower))
@@ -120,14 +128,15 @@ def test_coordinates_and_designs_are_each_others_inverse(where, unit):
 
 
 def test_a_joint_with_one_motor_keeps_its_list_of_whole_numbers():
-    space = ONE_SIDE.space
+    space = knee_chosen().space
     assert (space.listed, tuple(space.gears)) == (("knee_ratio",), ("hip_ratio",))
     assert [choice.name for choice in space.choices] == ["knee_motor"]
     assert space.upper[space.names.index("hip_ratio")] == len(space.gears["hip_ratio"]) - 1.0
 
 
-@pytest.mark.parametrize("where", [COORDINATES, ONE_SIDE], ids=["both", "knee"])
+@pytest.mark.parametrize("where", [both_chosen, knee_chosen], ids=["both", "knee"])
 def test_the_surrogate_sees_each_joint_s_own_actuator(where):
+    where = where()
     space = where.space
     values = space.snap(np.random.default_rng(1).uniform(*space.edges, (200, len(space.names))))
     features = features_of(space)
@@ -169,7 +178,7 @@ def search(study, generations=6, algorithm=None):
 def test_every_algorithm_asks_for_new_points_and_finds_the_best_pair(interpreted, name):
     study, generations = pairs(algorithm={"name": name, "population": 20}), 3 if name == "optuna_tpe" else 6
     _, history = search(study, generations)
-    values, space = np.vstack([asked for asked, _ in history]), COORDINATES.space
+    values, space = np.vstack([asked for asked, _ in history]), both_chosen().space
     assert len(values) == 20 * generations
     assert np.array_equal(space.snap(values), values)
     assert len({row.tobytes() for row in values}) == len(values)

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.stats import qmc
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.analysis.robustness import robust
@@ -37,6 +36,8 @@ def test_the_ranges_are_there_with_a_stand_only():
 
 def test_without_a_stand_the_points_are_those_of_twenty_one_coordinates():
     """With a stand there are two more coordinates, which fill their ranges evenly."""
+    from scipy.stats import qmc
+
     generator = qmc.Sobol(d=21, scramble=True, rng=np.random.default_rng(4))
     np.testing.assert_array_equal(sobol_samples(PLAIN, 16, 4).points, generator.random_base2(4))
     drawn = sobol_samples(STAND, 16, 4)

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 import shapely
-from scipy import sparse
-from scipy.sparse.linalg import splu
-from scipy.spatial import Delaunay, cKDTree
+
+from tests.lazily import Lazily
+
+sparse, linalg, spatial = Lazily("scipy.sparse"), Lazily("scipy.sparse.linalg"), Lazily("scipy.spatial")
 
 YOUNG_MPA, POISSON = 206000.0, 0.3
 
@@ -65,7 +66,7 @@ def _scattered(polygon: shapely.Polygon, size_mm: Callable[[Array], Array]) -> A
 
 def _triangles(polygon: shapely.Polygon, points: Array) -> Array:
     """Return Delaunay's triangles inside a polygon, counterclockwise."""
-    corners = Delaunay(points).simplices
+    corners = spatial.Delaunay(points).simplices
     a, b, c = (points[corners[:, i]] for i in range(3))
     area = 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
     corners[area < 0.0] = corners[area < 0.0][:, ::-1]
@@ -80,7 +81,7 @@ def mesh_of(pieces_mm: Sequence[Array], size_mm: Callable[[Array], Array]) -> Me
     outline = np.concatenate([piece[:-1:2] for piece in placed])
     count, polygon = len(outline), shapely.Polygon(outline)
     inner = _scattered(polygon, size_mm)
-    inner = inner[cKDTree(outline).query(inner)[0] > _NEAR_EDGE * size_mm(inner)]
+    inner = inner[spatial.cKDTree(outline).query(inner)[0] > _NEAR_EDGE * size_mm(inner)]
     points = np.concatenate([outline, inner])
     for _ in range(_SMOOTHINGS):
         corners = _triangles(polygon, points)
@@ -117,7 +118,7 @@ def _slopes(xi: float, eta: float) -> Array:
     )
 
 
-def _stiffness(mesh: Mesh) -> sparse.csc_matrix:
+def _stiffness(mesh: Mesh) -> Any:
     """Assemble the plate's stiffness in N/mm per mm of width; the displacements of node n are 2n and 2n + 1."""
     scale = YOUNG_MPA / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON))
     law = scale * np.array([[1.0 - POISSON, POISSON, 0.0], [POISSON, 1.0 - POISSON, 0.0], [0.0, 0.0, 0.5 - POISSON]])
@@ -150,7 +151,7 @@ def displaced_mm(mesh: Mesh, forces: Array, held: Array, held_mm: Array | float 
     free = np.setdiff1d(np.arange(len(moved)), fixed)
     load = forces.reshape(moved.shape) - stiffness @ moved
     reduced = stiffness[free][:, free]
-    factors = splu(reduced, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    factors = linalg.splu(reduced, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     moved[free] = factors.solve(load[free])
     return moved.reshape(forces.shape)
 
@@ -255,7 +256,7 @@ def root_stress(
     pieces, root, held = _outline(
         space, 2.0 * np.pi / teeth, rim_mm=root_mm + sign * rim * module_mm, load_mm=load_mm, beside=beside
     )
-    near = cKDTree(pieces[root][np.abs(np.hypot(*pieces[root].T) - root_mm) < 0.9 * module_mm])
+    near = spatial.cKDTree(pieces[root][np.abs(np.hypot(*pieces[root].T) - root_mm) < 0.9 * module_mm])
     mesh = mesh_of(
         pieces,
         lambda points: np.minimum(0.38 * module_mm / per_fillet + 0.3 * near.query(points)[0], 0.3 * module_mm),

@@ -2,13 +2,9 @@
 
 import dataclasses
 
-import build123d as bd
 import numpy as np
 import pytest
 
-from pareto_monoped.cad.kernel.process import solid_facts
-from pareto_monoped.cad.kernel.solids import solid_of
-from pareto_monoped.cad.kernel.step import Substance, part_step
 from pareto_monoped.cad.shape.meshes import beveled, flaws, mesh_of
 from pareto_monoped.geometry.features import Cone, Hole, Mouth, ShaftEnd
 from pareto_monoped.geometry.parts import Part, Prism
@@ -16,6 +12,12 @@ from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import M3, clearance, screw_part, tapped
 from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.materials import Material
+from tests.lazily import Lazily
+
+bd = Lazily("build123d")
+process = Lazily("pareto_monoped.cad.kernel.process")
+solids = Lazily("pareto_monoped.cad.kernel.solids")
+step = Lazily("pareto_monoped.cad.kernel.step")
 
 STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.5, 0.5, 0.5))
 RIM, BORE = Circle(radius_mm=20.0), Circle(radius_mm=8.0)
@@ -60,7 +62,7 @@ PARTS = pytest.mark.parametrize("part", [FLANGE, SCREW], ids=["flange", "screw"]
 
 @PARTS
 def test_a_solid_has_the_integrals_of_its_record(part):
-    (facts,) = solid_facts([part])
+    (facts,) = process.solid_facts([part])
     properties = part.mass_properties()
     assert facts.valid
     assert facts.bodies == 1
@@ -70,9 +72,9 @@ def test_a_solid_has_the_integrals_of_its_record(part):
 
 
 def test_each_cone_takes_what_its_closed_form_says():
-    (plain,) = solid_facts([dataclasses.replace(FLANGE, features=())])
+    (plain,) = process.solid_facts([dataclasses.replace(FLANGE, features=())])
     for feature in FLANGE.features:
-        (cut,) = solid_facts([dataclasses.replace(FLANGE, features=(feature,))])
+        (cut,) = process.solid_facts([dataclasses.replace(FLANGE, features=(feature,))])
         expected = sum(float(bevel.integrals()[0]) for bevel in feature.bevels)
         assert expected < 0.0
         assert cut.volume_mm3 - plain.volume_mm3 == pytest.approx(expected, rel=1e-8), feature
@@ -81,7 +83,7 @@ def test_each_cone_takes_what_its_closed_form_says():
 @PARTS
 def test_solids_have_cones_as_read_back_from_step(part, tmp_path):
     path = tmp_path / "part.step"
-    path.write_bytes(part_step(solid_of(part), part.name, Substance.of(part)))
+    path.write_bytes(step.part_step(solids.solid_of(part), part.name, step.Substance.of(part)))
     read = bd.import_step(path)
     assert read.is_valid
     assert read.volume == pytest.approx(float(part.volume_mm3()), rel=1e-9)
@@ -110,7 +112,7 @@ def test_a_cone_on_no_edge_is_refused():
     with pytest.raises(ValueError, match="radius 15 mm"):
         mesh_of(dataclasses.replace(FLANGE, features=(lost,)))
     with pytest.raises(ValueError, match="radius 15 mm"):
-        solid_of(dataclasses.replace(FLANGE, features=(lost,)))
+        solids.solid_of(dataclasses.replace(FLANGE, features=(lost,)))
     with pytest.raises(ValueError, match="3 mm deep"):
         mesh_of(dataclasses.replace(FLANGE, features=(deep,)))
 
@@ -123,7 +125,7 @@ def test_cones_that_meet_are_refused():
         features=(clearance(M3, (close,), 0.0, 3.0, countersunk="low"),),
     )
     with pytest.raises(ValueError, match="does not fit"):
-        solid_of(part)
+        solids.solid_of(part)
 
 
 def test_a_mesh_without_cones_stays_as_it_is():

@@ -1,11 +1,9 @@
 """Solids and meshes of every part against the records that gave the masses."""
 
-import build123d as bd
 import numpy as np
 import pytest
 import trimesh
 
-from pareto_monoped.cad.kernel.solids import solid_of, solids_in
 from pareto_monoped.cad.shape.meshes import flaws, mesh_of
 from pareto_monoped.cad.shape.outlines import regrouped
 from pareto_monoped.geometry.parts import Part, Prism
@@ -14,6 +12,10 @@ from pareto_monoped.geometry.shapes import Circle, rectangle
 from pareto_monoped.leg.dimensions import leg_dimensions
 from pareto_monoped.leg.shank import foot_part
 from pareto_monoped.materials import Material
+from tests.lazily import Lazily
+
+bd = Lazily("build123d")
+kernel = Lazily("pareto_monoped.cad.kernel.solids")
 
 STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.5, 0.5, 0.5))
 
@@ -27,7 +29,7 @@ def test_every_part_is_one_valid_solid_of_its_record_s_volume(product, every):
         assert facts.volume_mm3 == pytest.approx(float(kind.part.volume_mm3()), rel=2e-3), kind.name
         if k % every:
             continue
-        solid = bd.Shape.cast(solid_of(kind.part))
+        solid = bd.Shape.cast(kernel.solid_of(kind.part))
         assert solid.is_valid, kind.name
         assert len(solid.solids()) == 1, kind.name
         assert facts.volume_mm3 == pytest.approx(solid.volume, rel=1e-9), kind.name
@@ -42,7 +44,7 @@ def test_meshes_are_closed_and_lie_within_their_tolerance(product, every):
         assert flaws(kind.mesh.points_mm[kind.mesh.triangles]) == "", kind.name
         assert mesh.is_watertight, kind.name
         assert mesh.is_winding_consistent, kind.name
-        solid = bd.Shape.cast(solid_of(kind.part))
+        solid = bd.Shape.cast(kernel.solid_of(kind.part))
         assert mesh.volume == pytest.approx(solid.volume, rel=5e-3), kind.name
         if kind.part.balls:
             continue  # the kernel's box of a cut sphere is that of the whole
@@ -84,13 +86,13 @@ def test_separate_bodies_become_a_compound():
         process="bought",
         prisms=tuple(Prism(outline=Circle(radius_mm=2.0, x_mm=x), z0_mm=0.0, z1_mm=3.0) for x in (-5.0, 5.0)),
     )
-    assert len(solids_in(solid_of(part))) == 2
+    assert len(kernel.solids_in(kernel.solid_of(part))) == 2
     assert len(mesh_of(part).body.decompose()) == 2
 
 
 def test_the_foot_is_a_cut_ball_with_a_pocket(actuator_map):
     foot = foot_part(0.3, leg_dimensions(actuator_map))
-    solid = bd.Shape.cast(solid_of(foot))
+    solid = bd.Shape.cast(kernel.solid_of(foot))
     assert solid.volume == pytest.approx(float(foot.volume_mm3()), rel=1e-6)
     centre = solid.center()
     assert pytest.approx(1e3 * foot.mass_properties().com_m, abs=1e-3) == (centre.X, centre.Y, centre.Z)

@@ -7,23 +7,17 @@ import re
 
 import numpy as np
 import pytest
-from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
-from OCP.collections import Sequence_TDF_Label
-from OCP.STEPCAFControl import STEPCAFControl_Reader
-from OCP.TCollection import TCollection_ExtendedString
-from OCP.TDataStd import TDataStd_Name
-from OCP.TDocStd import TDocStd_Document
-from OCP.XCAFApp import XCAFApp_Application
-from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_MaterialTool
 
 from pareto_monoped.cad.assembly import shift, turn_z
 from pareto_monoped.cad.kernel.client import StepAssembly, StepPlacement
-from pareto_monoped.cad.kernel.solids import solid_of
-from pareto_monoped.cad.kernel.step import Substance, assembly_step, part_step, shapes_in, spliced, tree_step
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.materials import Material
+from tests.lazily import Lazily
+
+kernel = Lazily("pareto_monoped.cad.kernel.solids")
+step = Lazily("pareto_monoped.cad.kernel.step")
 
 STEEL = Material(name="steel", density_kg_per_m3=7850.0, colour=(0.5, 0.5, 0.5))
 ALUMINIUM = Material(name="aluminium", density_kg_per_m3=2700.0, colour=(0.75, 0.8, 0.85))
@@ -57,12 +51,17 @@ def assembly():
 
 @pytest.fixture(scope="module")
 def solids(assembly):
-    return {name: BRepBuilderAPI_Copy(solid_of(part)).Shape() for name, part in assembly.parts.items()}
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
+
+    return {name: BRepBuilderAPI_Copy(kernel.solid_of(part)).Shape() for name, part in assembly.parts.items()}
 
 
 @pytest.fixture(scope="module")
 def parts(assembly):
-    return {name: part_step(solid_of(part), name, Substance.of(part)) for name, part in assembly.parts.items()}
+    return {
+        name: step.part_step(kernel.solid_of(part), name, step.Substance.of(part))
+        for name, part in assembly.parts.items()
+    }
 
 
 def entities(text):
@@ -73,11 +72,11 @@ def entities(text):
 
 
 def written(assembly, parts, solids):
-    return assembly_step(assembly, parts, {"pads": solids["pads"]})
+    return step.assembly_step(assembly, parts, {"pads": solids["pads"]})
 
 
 def test_it_has_the_entities_that_the_kernel_writes_of_all_solids(assembly, parts, solids):
-    assert entities(written(assembly, parts, solids)) == entities(tree_step(assembly, solids))
+    assert entities(written(assembly, parts, solids)) == entities(step.tree_step(assembly, solids))
 
 
 def test_every_part_keeps_the_uncertainty_of_its_own_file(assembly, parts, solids):
@@ -92,7 +91,7 @@ def test_colours_are_those_of_the_parts(assembly, parts, solids):
     found = {}
     colours = dict(re.findall(rb"#(\d+) = COLOUR_RGB\('',([^)]*)\);", text))
     styled = re.findall(rb"#(\d+) = STYLED_ITEM\('color',\(#\d+\),#(\d+)\);", text)
-    for shape in shapes_in(text):
+    for shape in step.shapes_in(text):
         (style,) = (int(item) for item, solid in styled if int(solid) == shape.solid)
         found[shape.name] = tuple(float(v) for v in colours[b"%d" % (style + 7)].split(b","))
     # What has several bodies is no solid, and has no colour.
@@ -101,6 +100,14 @@ def test_colours_are_those_of_the_parts(assembly, parts, solids):
 
 def test_materials_and_densities_are_read_by_the_kernel_as_those_of_the_parts(assembly, parts, solids, tmp_path):
     """In a file of schema AP242; what has several bodies is no solid, and has no material."""
+    from OCP.collections import Sequence_TDF_Label
+    from OCP.STEPCAFControl import STEPCAFControl_Reader
+    from OCP.TCollection import TCollection_ExtendedString
+    from OCP.TDataStd import TDataStd_Name
+    from OCP.TDocStd import TDocStd_Document
+    from OCP.XCAFApp import XCAFApp_Application
+    from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_MaterialTool
+
     text = written(assembly, parts, solids)
     assert b"FILE_SCHEMA(('AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF" in re.sub(rb"\s", b"", text)
     assert b"AP242" in parts["plate"]
@@ -129,4 +136,4 @@ def test_materials_and_densities_are_read_by_the_kernel_as_those_of_the_parts(as
 
 def test_a_file_of_another_part_is_refused(assembly, parts, solids):
     with pytest.raises(ValueError, match="STEP file of plate: is laid out in an unknown way"):
-        spliced(tree_step(assembly, solids), parts | {"plate": parts["bolt"]})
+        step.spliced(step.tree_step(assembly, solids), parts | {"plate": parts["bolt"]})

@@ -5,7 +5,6 @@ import io
 import json
 import re
 
-import build123d as bd
 import ezdxf
 import ezdxf.units
 import lib3mf
@@ -29,6 +28,9 @@ from pareto_monoped.cad.write.meshes import glb, stl, threemf
 from pareto_monoped.cad.write.tables import parts_list
 from pareto_monoped.geometry.features import Cone
 from tests.cad.check.faults import bare
+from tests.lazily import Lazily
+
+bd = Lazily("build123d")
 
 UNITS = ["base_frame", "hip_actuator", "thigh", "knee_actuator", "journal", "shank", "foot"]
 

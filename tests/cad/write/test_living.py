@@ -12,7 +12,6 @@ import subprocess
 import sys
 from collections import Counter
 
-import build123d as bd
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
@@ -20,7 +19,6 @@ from scipy.spatial import cKDTree
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.cad.as_built import built_of
 from pareto_monoped.cad.jobs import case_job
-from pareto_monoped.cad.kernel.solids import solid_of
 from pareto_monoped.cad.product import build_product
 from pareto_monoped.cad.shape.outlines import centres_mm
 from pareto_monoped.cad.write.drivers import _MODULES
@@ -29,6 +27,10 @@ from pareto_monoped.cad.write.living import living_model
 from pareto_monoped.design import RULE_SETS
 from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.robot.build import build_robot
+from tests.lazily import Lazily
+
+bd = Lazily("build123d")
+kernel = Lazily("pareto_monoped.cad.kernel.solids")
 
 VOLUME = 1e-4  # 0.01 percent
 SOME = ("thigh_plate_inner", "hip_actuator_planet", "base_rod", "foot", "drive_sprocket", "hip_mount_screw")
@@ -79,7 +81,7 @@ def test_the_program_needs_build123d_alone(living):
 def test_it_has_the_parts_of_the_design_with_the_volumes_of_its_solids(names, product):
     assert set(names["PARTS"]) == {unique.name for unique in product.unique}
     for unique in (unique for unique in product.unique if unique.name in SOME):
-        shape, drawn = names["build"](names["PARTS"][unique.name][0]()), bd.Solid(solid_of(unique.part))
+        shape, drawn = names["build"](names["PARTS"][unique.name][0]()), bd.Solid(kernel.solid_of(unique.part))
         assert shape.is_valid
         assert shape.volume == pytest.approx(drawn.volume, rel=VOLUME), unique.name
         np.testing.assert_allclose([*shape.center()], [*drawn.center()], atol=1e-3)

@@ -10,7 +10,6 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.write.dxf import stand_files
 from pareto_monoped.leg.dimensions import leg_dimensions
 
-LEG = leg_dimensions(map_for("VT8020"))
 RECORD = {
     "calibration": "slippery-2",
     "jumps": {
@@ -20,6 +19,10 @@ RECORD = {
 }
 
 
+def files_of(record):
+    return stand_files(leg_dimensions(map_for("VT8020")), record)
+
+
 def ends_of(entity):
     if entity.dxftype() == "ARC":
         return entity.start_point, entity.end_point
@@ -27,7 +30,7 @@ def ends_of(entity):
 
 
 def test_the_arm_reads_back_closed_and_with_its_holes():
-    files = stand_files(LEG, RECORD)
+    files = files_of(RECORD)
     drawing = ezdxf.read(io.StringIO(files["test_stand/arm.dxf"]))
     circles = [entity.dxf.radius for entity in drawing.modelspace() if entity.dxftype() == "CIRCLE"]
     assert sorted(circles) == [pytest.approx(1.6)] * 8 + [pytest.approx(2.15)] * 3
@@ -37,19 +40,19 @@ def test_the_arm_reads_back_closed_and_with_its_holes():
 
 
 def test_the_text_names_every_screw():
-    text = stand_files(LEG, RECORD)["test_stand/README.md"]
+    text = files_of(RECORD)["test_stand/README.md"]
     assert "| 16 | M3 x 8 cap screw (ISO 4762) 8.8 |" in text
     assert "{" not in text
     assert all(len(line) <= 120 for line in text.splitlines())
 
 
 def test_the_text_says_what_differs_from_the_simulation_and_gives_both_heights():
-    text = stand_files(LEG, RECORD)["test_stand/README.md"]
+    text = files_of(RECORD)["test_stand/README.md"]
     for said in ("4.0 N of\nfriction", "0.418 kg", "1.033 m high\non this stand", "1.061 m high under", "slippery-2"):
         assert said in text
     assert "as the simulation does" not in text
     lame = RECORD | {"jumps": RECORD["jumps"] | {"stand": RECORD["jumps"]["stand"] | {"height_m": None}}}
-    assert "it jumps not at all\non this stand" in stand_files(LEG, lame)["test_stand/README.md"]
+    assert "it jumps not at all\non this stand" in files_of(lame)["test_stand/README.md"]
 
 
 def test_an_export_has_both_jumps_and_says_what_the_base_lifts(exported):
