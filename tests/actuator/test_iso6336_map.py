@@ -29,7 +29,7 @@ DATA = SETTINGS.parts.rating
 DESIGNS = pytest.mark.parametrize("case", PAPER_CASES)
 
 
-EVERY_TIME = ("VT8020", "MAD_M6C12")
+EVERY_TIME = ("VT8020",)
 """Motors whose winners are looked at every time: the default and the smallest."""
 MOTORS = pytest.mark.parametrize(
     "name", [pytest.param(name, marks=() if name in EVERY_TIME else pytest.mark.long) for name in motor_names()]
@@ -197,6 +197,7 @@ def test_no_actuator_is_lighter_with_a_wider_face(name, family):
     assert (np.diff(masses, axis=0)[:, known] >= 0.0).all()
 
 
+@pytest.mark.long
 def test_profile_shift_opens_intervals_and_never_adds_mass(vt8020):
     plain = build_map(vt8020, replace(SETTINGS, shifts=((0.0, 0.0),))).masses_kg()
     shifted = map_of(vt8020, "iso6336").masses_kg()

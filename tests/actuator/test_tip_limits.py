@@ -92,7 +92,7 @@ def width(gears, part, off):
     ("motor", "rules", "every"),
     [
         ("VT8020", "iso6336", 30),
-        ("U8", "paper", 40),
+        pytest.param("U8", "paper", 40, marks=pytest.mark.long),
         pytest.param("U8", "iso6336", 8, marks=pytest.mark.long),
         pytest.param("U12", "paper", 8, marks=pytest.mark.long),
     ],

@@ -74,6 +74,7 @@ def test_table_1_is_that_of_the_command(capsys):
             assert row[key] == said[whose][name]
 
 
+@pytest.mark.long
 def test_a_campaign_is_that_of_the_command(tmp_path, capsys):
     file = tmp_path / "grid.toml"
     file.write_text(

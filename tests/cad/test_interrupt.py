@@ -76,6 +76,7 @@ def test_an_interrupt_in_any_phase_leaves_nothing(phase, tmp_path):
     wait_for(lambda: not is_running(kernel))
 
 
+@pytest.mark.long
 def test_an_interrupt_is_answered_where_the_shell_had_it_ignored(tmp_path):
     """A shell starts background jobs with SIGINT ignored."""
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)

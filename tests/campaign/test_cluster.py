@@ -17,7 +17,7 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-@pytest.mark.parametrize("cores", [None, 2])
+@pytest.mark.parametrize("cores", [pytest.param(None, marks=pytest.mark.long), 2])
 def test_a_scheduler_that_does_not_answer_is_told_once_before_any_study(tmp_path, monkeypatch, cores):
     """Each study tried to connect by itself, and said so twice."""
     monkeypatch.setattr("pareto_monoped.compute.cluster._CONNECT_S", 1.0)

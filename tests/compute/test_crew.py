@@ -194,6 +194,7 @@ def ended(process):
     return False
 
 
+@pytest.mark.long
 def test_processes_end_with_a_parent_that_is_killed(tmp_path):
     with script(tmp_path, 'if __name__ == "__main__":\n    work()\n') as program:
         process = int(program.stdout.readline())

@@ -94,7 +94,10 @@ def test_a_worker_with_more_threads_is_preferred_by_more_seats():
     assert given == ["a", "b", "b", "b", "a"]
 
 
-@pytest.mark.parametrize(("count", "words"), [(1, "its only worker does not answer"), (2, "none of its 2 workers ans")])
+@pytest.mark.parametrize(
+    ("count", "words"),
+    [pytest.param(1, "its only worker does not answer", marks=pytest.mark.long), (2, "none of its 2 workers ans")],
+)
 def test_workers_that_all_hang_are_not_said_to_be_absent(impatient, count, words):
     """It was "has no worker; start scheduler and workers"."""
     workers = {str(number): Worker(later=(slow,)) for number in range(count)}

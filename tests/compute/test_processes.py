@@ -222,7 +222,7 @@ def test_leaving_by_an_exception_ends_tasks_in_progress(tmp_path, name):
     assert futures[1].result(timeout=1) == 9
 
 
-@pytest.mark.parametrize("leaving", ["in order", "by an exception"])
+@pytest.mark.parametrize("leaving", ["in order", pytest.param("by an exception", marks=pytest.mark.long)])
 def test_one_that_hangs_is_killed(leaving):
     made = Processes()
     assert made.submit(tasks.square, 2).result(timeout=60) == 4

@@ -84,7 +84,7 @@ def test_every_number_of_the_record_is_mujocos(which):
     assert (compiled["status"] == 2.0).sum() >= 15
 
 
-@pytest.mark.parametrize("motor", MOTORS[::3])
+@pytest.mark.parametrize("motor", [MOTORS[0], *(pytest.param(name, marks=pytest.mark.long) for name in MOTORS[3::3])])
 def test_so_it_is_with_other_motors_and_all_variables_whatever_becomes_of_the_jump(motor):
     compiled = the_same(wild_designs(30, seed=6), motor, ELASTIC)
     assert len(np.unique(compiled["status"])) >= 2

@@ -101,6 +101,7 @@ def test_the_keyboard_alone_asks_walks_zooms_sorts_and_keeps(file, open_tab, wid
     tab.quiet(file)
 
 
+@pytest.mark.long
 def test_a_swipe_over_the_charts_scrolls_the_page_and_a_tap_selects(file, open_tab):
     tab = open_tab(file, width=390, height=844, options={"has_touch": True, "is_mobile": True})
     session = tab.context.new_cdp_session(tab.page)

@@ -104,6 +104,7 @@ def test_a_measure_over_decades_gets_a_logarithmic_axis_by_itself(tab, payload):
     assert not {name for name, ratio in ratios.items() if ratio < 15 and name in many and ratio * 2 < 15}
 
 
+@pytest.mark.long
 def test_three_measures_have_a_view_in_space_that_turns(tab, payload):
     (card,) = payload.studies
     tab.page.select_option("#colour", "mass_kg")

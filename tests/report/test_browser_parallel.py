@@ -70,6 +70,7 @@ def test_any_measure_can_be_an_axis_and_undo_takes_it_back(tab, data, payload, f
     tab.quiet(file)
 
 
+@pytest.mark.long
 def test_axes_are_ordered_by_dragging_their_names(tab):
     before = order(tab)
     head, goal = (tab.page.locator(f"[data-head={name}]").bounding_box() for name in (before[1], before[4]))

@@ -123,6 +123,7 @@ def test_a_link_followed_is_not_written_over_before_it_is_read(tab, made):
     assert found == link
 
 
+@pytest.mark.long
 def test_seven_do_not_fit(tab, made):
     keep(tab, made, *range(6))
     go = made.card.trials.trial[made.card.front[7]]
@@ -154,6 +155,7 @@ def test_by_keyboard_alone_at_any_width_and_in_any_colours(tab, made, width, sch
     tab.quiet(made.file)
 
 
+@pytest.mark.long
 def test_paper_is_light_whatever_the_screen(tab):
     tab.look(scheme="dark")
     assert tab.page.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--ink').trim()") == "#e6edf3"

@@ -458,6 +458,7 @@ def test_a_question_is_answered_with_the_designs_that_would_do(tab, mixed):
     assert f" this, {at - 1} on the front" in tab.text("#ask-answer")
 
 
+@pytest.mark.long
 def test_the_speed_is_a_share_of_real_time(tab, mixed):
     j, _ = knee_jump(tab, mixed)
     scrubbed = tab.page.evaluate(

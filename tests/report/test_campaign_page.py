@@ -168,7 +168,7 @@ def test_of_many_groups_the_best_are_shown_first_and_buttons_show_all_or_none(wi
 
 
 @pytest.mark.browser
-@pytest.mark.parametrize(("width", "scheme"), [(1440, "light"), (390, "dark")])
+@pytest.mark.parametrize(("width", "scheme"), [pytest.param(1440, "light", marks=pytest.mark.long), (390, "dark")])
 def test_charts_are_drawn_offline_and_a_group_can_be_switched_off(made, browser, width, scheme):
     file, _ = made
     context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme)

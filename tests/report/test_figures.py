@@ -147,6 +147,7 @@ def test_the_torques_stand_between_the_limits_of_their_gearboxes_in_the_pages_co
         assert np.abs(line.get_ydata()).max() <= gearbox.peak_torque_n_m * 1.01
 
 
+@pytest.mark.long
 def test_no_legend_covers_data(both):
     for make in (front_figure, _links, _states, _map, _convergence, _along):
         figure = mpl.Figure(figsize=(3.5, 2.6), layout="constrained")

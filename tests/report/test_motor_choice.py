@@ -173,6 +173,7 @@ def test_the_page_shows_colours_and_filters_motors(several, payload, folder, ope
     tab.quiet(file)
 
 
+@pytest.mark.long
 @pytest.mark.browser
 def test_three_objectives_keep_the_colour_and_leave_the_mark_to_the_motor(several, folder, open_tab):
     objectives = replace(several.data.study.objectives, names=("height_m", "energy_j", "mass_kg"))

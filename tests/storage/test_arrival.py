@@ -108,6 +108,7 @@ while True:
 """
 
 
+@pytest.mark.long
 def test_a_study_made_while_a_reader_polls(tmp_path):
     path = tmp_path / "s.db"
     reader = subprocess.Popen([sys.executable, "-c", POLL, path], stdout=subprocess.PIPE, text=True)

@@ -53,6 +53,7 @@ def test_status_reads_the_same(name):
     }
 
 
+@pytest.mark.long
 def test_what_is_left_to_gain_needs_no_more_than_the_history_around_its_middle(tmp_path):
     """Of two algorithms and at each length: what all of the history says, read row by row."""
     for algorithm, population in (("random", 7), ("nsga2", 10)):

@@ -76,6 +76,7 @@ def test_what_a_file_cannot_say_is_refused_in_one_line(changes, words):
     assert "\n" not in str(refused.value)
 
 
+@pytest.mark.long
 def test_a_study_that_was_stopped_goes_on_as_if_it_never_was(made, tmp_path):
     """Also in the middle of a generation."""
     db = tmp_path / "parts.db"

@@ -109,6 +109,7 @@ def test_a_joint_without_a_shape_must_be_named_and_be_there(robot):
         assert "hip_actuator/ring" in loose(replaced(robot, "hip_actuator/ring", joint=joint))
 
 
+@pytest.mark.long
 def test_words_alone_hold_nothing(robot):
     joint = Joint(kind=JointKind.BONDED, how="bonded into", partner="backplate")
     moved = replaced(robot, "hip_actuator/rear_bearing", places_mm=((200.0, 0.0, 0.0),), joint=joint)
@@ -175,6 +176,7 @@ def test_play_beyond_the_limit_is_found(on_bushes, play_mm, freed):
     assert bool(found) is bool(freed)
 
 
+@pytest.mark.long
 def test_a_ring_without_its_joint_is_the_only_failure(product, examine, failing):
     loosened = replaced(product.robot, "hip_actuator/ring", joint=None)
     broken = dataclasses.replace(product, robot=loosened)

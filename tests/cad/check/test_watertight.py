@@ -105,6 +105,7 @@ def test_a_file_has_as_many_triangles_as_its_header_says(part_files):
     assert flaws(read_stl(fewer)) == "3 edges do not border two triangles"
 
 
+@pytest.mark.long
 def test_a_mesh_of_another_size_than_its_part_is_named(product, part_files, examine, failing):
     kind = kind_of(product, "foot")
     broken = part_files | {"foot": scaled(kind, 1.01)}

@@ -30,7 +30,11 @@ def rows_of(place, query):
         return [tuple(row) for row in connection.execute(query)]
 
 
-@pytest.mark.parametrize("options", [{}, {"known_schemas": ()}], ids=["direct", "by Optuna's public call"])
+@pytest.mark.parametrize(
+    "options",
+    [{}, pytest.param({"known_schemas": ()}, marks=pytest.mark.long)],
+    ids=["direct", "by Optuna's public call"],
+)
 def test_same_rows_and_running_hash(tmp_path, place, options):
     made_database(tmp_path / "s.db", **options)
     made_database(place, **options)
