@@ -116,6 +116,7 @@ def test_a_list_of_one_gearbox_has_no_bounds(tmp_path, lower, upper, told):
     assert [(one.name, one.side) for one in at_bounds(data, front)] == [("knee_ratio", "lower")] * told
 
 
+@pytest.mark.long
 def test_a_bound_of_a_gear_list_is_its_last_gearbox_and_not_what_the_study_says(tmp_path):
     run(made(rules="iso6336", motor="U8"), tmp_path / "s.db", evaluations=8)
     data = read_study(tmp_path / "s.db")

@@ -54,6 +54,7 @@ def test_robust_takes_an_executor_and_a_robust_pick_is_that_of_the_command(store
     assert picked.row["height_m"] == said["height_m"] < stored.trials.height_m[picked.trial]
 
 
+@pytest.mark.long
 def test_sensitivity_is_that_of_the_command(stored, capsys):
     knee = stored.pick("knee")
     found = pm.sensitivity(stored, knee, samples=32)

@@ -54,6 +54,7 @@ def test_without_an_option_threads_do_the_work():
         assert executor is None
 
 
+@pytest.mark.long
 def test_processes_are_as_many_as_asked_for_and_losses_are_told_on_standard_error(capsys):
     limits = Limits(absent_s=7.0)
     with executor_at(Where(processes=1), limits=limits) as crew:

@@ -110,6 +110,7 @@ def test_no_scheduler_at_the_address(monkeypatch):
         DaskWorkers(f"127.0.0.1:{free_port()}")
 
 
+@pytest.mark.long
 def test_who_accepts_a_connection_and_stays_silent_is_no_scheduler(monkeypatch):
     for name, seconds in (("_CONNECT_S", 1.0), ("_ANSWER_S", 1.0)):
         monkeypatch.setattr(f"pareto_monoped.compute.cluster.{name}", seconds)

@@ -105,6 +105,7 @@ def test_a_case_has_the_gearboxes_of_its_ratios(tab, data):
     assert row in " ".join(tab.text("#gears").split())
 
 
+@pytest.mark.long
 def test_the_drawn_robot_has_the_dimensions_of_its_own_motor(source, source_u12, both_file, open_tab):
     """The page once drew the default motor's leg, whatever the motor."""
     tab = open_tab(both_file)

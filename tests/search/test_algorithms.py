@@ -270,7 +270,9 @@ def test_with_three_objectives_it_goes_on_exactly_from_json(name, told, long):
         assert np.array_equal(values, wanted)
 
 
-@pytest.mark.parametrize("name", ["sms_emoa", "nsga2", "surrogate"])
+@pytest.mark.parametrize(
+    "name", ["nsga2", *(pytest.param(name, marks=pytest.mark.long) for name in ("sms_emoa", "surrogate"))]
+)
 def test_with_three_objectives_it_beats_random_search(name):
     reference = reference_point(
         Objectives(names=tuple(THREE)), {"height_m": -2.5, "electrical_energy_j": 2.5, "mass_kg": 2.5}

@@ -92,6 +92,7 @@ def test_on_two_processes(on_threads, two_processes, tmp_path):
     assert told == []
 
 
+@pytest.mark.long
 def test_the_default_search_on_two_processes(two_processes, tmp_path):
     """Its model is made here; only what it proposes jumps elsewhere."""
     study = study_of(name="s", evaluations=60, algorithm={"name": "surrogate", "population": 20}, audit=False)

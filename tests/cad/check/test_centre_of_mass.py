@@ -25,6 +25,7 @@ def weighed(product):
     return weigh_bodies(product, weigh_parts(product))
 
 
+@pytest.mark.long
 def test_a_displaced_centre_of_mass_is_the_only_failure(arrays, failing):
     assert failing(arrays=displaced(arrays, "base", 0, 50.0)) == ["base has the centre of mass that was simulated"]
 
