@@ -81,6 +81,7 @@ def test_optunas_front_is_ours(db, load):
     assert best == set(read_study(db).front()["trial"]) == {0, 3, 4}
 
 
+@pytest.mark.parametrize("db", ["file", pytest.param("server", marks=pytest.mark.long)], indirect=True)
 @pytest.mark.parametrize("options", [{}, {"known_schemas": ()}], ids=["direct", "by Optuna's public call"])
 def test_optuna_has_the_objectives_of_the_study(db, options, load):
     names = ["mass_kg", "height_m", "electrical_energy_j"]
@@ -130,6 +131,7 @@ def test_readers_see_whole_generations_while_it_grows(db, load):
             assert len(read_study(db).trials) == len(load().trials) == 2 * (number + 1)
 
 
+@pytest.mark.parametrize("db", ["file", pytest.param("server", marks=pytest.mark.long)], indirect=True)
 @pytest.mark.parametrize("name", ["'; DROP TABLE trials; --", "<script>alert(1)</script>", "../../x\n\u202e\U0001f9bf"])
 def test_names_are_text_and_nothing_else(db, name, load):
     made_database(db, study=made_study(name=name))
