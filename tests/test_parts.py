@@ -9,6 +9,7 @@ from pareto_monoped.actuator.actuator import reflected_inertia_kg_m2
 from pareto_monoped.actuator.motors import motor_names
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import DEFAULT_RULES, PAPER_CASES
+from pareto_monoped.geometry.features import Hole
 from pareto_monoped.geometry.making import limits
 from pareto_monoped.geometry.roles import FASTENERS, SCREWS, Group, JointKind, Role, Visibility
 from pareto_monoped.robot.build import build_robot
@@ -100,3 +101,18 @@ def test_volume_alone_is_the_first_of_the_integrals(name):
     assert len(solids) > 100
     for solid in solids:
         assert solid.volume_mm3() == pytest.approx(solid.integrals()[0], rel=1e-12, abs=1e-12)
+
+
+def test_every_hole_lies_within_its_part():
+    """A bore of a casing could have begun below it: solids and meshes are cut by prisms, and drawings told the bore."""
+    seen = 0
+    for unit, part in all_parts():
+        holes = [one for one in part.features if isinstance(one, Hole)]
+        if not holes:
+            continue
+        ends = [(float(p.z0_mm), float(p.z1_mm)) for p in part.prisms]
+        low, high = min(min(pair) for pair in ends), max(max(pair) for pair in ends)
+        for hole in holes:
+            assert low - 1e-9 <= hole.low_mm < hole.high_mm <= high + 1e-9, (unit.name, part.name, hole)
+            seen += 1
+    assert seen > 100

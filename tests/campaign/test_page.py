@@ -1,12 +1,13 @@
 """Tables of a campaign's page, read with an HTML parser, against made studies whose numbers are known."""
 
+import re
 from dataclasses import replace
 from html.parser import HTMLParser
 
 import numpy as np
 import pytest
 
-from pareto_monoped.campaign.page import campaign_page
+from pareto_monoped.campaign.page import _strip, campaign_page
 from tests.campaign.support import content_of, made_campaign
 
 AXES = 'motors = ["U8", "U10"]\nseeds = [1, 2, 3]'
@@ -105,3 +106,10 @@ def test_of_a_second_objective_that_is_maximised_the_most_is_told(tmp_path):
     told = [cell.split() for name, cell in zip(head, row, strict=True) if " at " in name]
     # The median, and the band from the best to the worst of the three.
     assert [[float(word) for word in words if word != "to"] for words in told] == [[5, 6, 4], [3, 4, 2], [3, 4, 2]]
+
+
+def test_dots_of_hypervolumes_lie_between_the_ends_of_their_strip():
+    drawn = _strip([3.0, 13.0, 8.0], (3.0, 13.0))
+    assert [float(x) for x in re.findall(r'cx="([^"]+)"', drawn)] == [6.0, 124.0, 65.0]
+    assert re.findall(r'x[12]="([^"]+)"', drawn) == ["6", "124"]
+    assert re.findall(r'cx="([^"]+)"', _strip([5.0], (5.0, 5.0))) == ["6.0"]

@@ -48,6 +48,18 @@ def test_tolerances_follow_the_standard_s_formula(zone, units):
         assert 1e3 * (found.upper_mm - found.lower_mm) == pytest.approx(formula_um, abs=1.0)  # rounded
 
 
+def test_wide_tolerances_are_ten_times_those_of_five_grades_below():
+    """From IT6 on (ISO 286-1, table 1). IT8 is 25 i, rounded."""
+
+    def width_um(zone):
+        return 1e3 * (limits(high, zone).upper_mm - limits(high, zone).lower_mm)
+
+    for low, high in pairwise([1.0, 3.0, 6.0, 10.0, 18.0, 30.0, 50.0, 80.0, 120.0]):
+        mean = np.sqrt(low * high)
+        assert width_um("h13") == pytest.approx(10.0 * round(25.0 * (0.45 * mean ** (1.0 / 3.0) + 0.001 * mean)))
+        assert width_um("h12") == pytest.approx(10.0 * width_um("H7"))
+
+
 def test_a_size_at_the_end_of_a_range_belongs_to_it():
     assert limits(6.0, "m6") != limits(6.01, "m6")
 

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 
 from pareto_monoped.actuator.actuator import build_actuator
 from pareto_monoped.actuator.assumptions import default_service
+from pareto_monoped.actuator.gearset import load_sharing
 from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.search import map_for, map_of
-from pareto_monoped.actuator.service.loads import row_load
+from pareto_monoped.actuator.service.loads import bush_pv, row_load
 from pareto_monoped.actuator.service.sheet import service_sheet
 from pareto_monoped.design import RULE_SETS
 
@@ -163,3 +164,22 @@ def test_a_larger_bearing_lasts_longer(vt8020, vt_map):
         for one in (usual, wide)
     )
     assert large.life_h > 1.5 * small.life_h
+
+
+def test_bushes_bear_the_pressure_on_a_pin_times_the_speed_at_which_it_slides(vt_map):
+    """By hand: the mean torque over the planets, on the pin's section; the planet turns on its pin as it rolls in the
+    ring that stands, while the carrier takes the pin along.
+    """
+    gears, width_mm, data = vt_map.lookup(6.0).gears, 8.0, vt_map.settings.parts
+    carrier_mm = 0.5 * gears.module_mm * (gears.sun_teeth + gears.planet_teeth)
+    assert gears.carrier_radius_mm == pytest.approx(carrier_mm, rel=0.02)  # profile shift moves it a little
+    torque_n_m = data.duty.mean_share * gears.ratio * vt_map.motor.peak_torque_n_m
+    force_n = (
+        load_sharing(gears.planets, vt_map.settings) * torque_n_m / (gears.planets * 1e-3 * gears.carrier_radius_mm)
+    )
+    pressure_mpa = force_n / (data.carrier.pin_diameter_mm * width_mm)
+    carrier = vt_map.settings.service.mean_speed_rad_per_s
+    planet = carrier * (1.0 - gears.ring_teeth / gears.planet_teeth)
+    sliding_m_per_s = abs(planet - carrier) * 0.5e-3 * data.carrier.pin_diameter_mm
+    found = bush_pv(gears, width_mm, vt_map.motor, vt_map.settings)
+    assert found == pytest.approx(pressure_mpa * sliding_m_per_s, rel=1e-12)
