@@ -33,7 +33,15 @@ bd = Lazily("build123d")
 kernel = Lazily("pareto_monoped.cad.kernel.solids")
 
 VOLUME = 1e-4  # 0.01 percent
-SOME = ("thigh_plate_inner", "hip_actuator_planet", "base_rod", "foot", "drive_sprocket", "hip_mount_screw")
+SOME = (
+    "thigh_plate_inner",
+    "hip_actuator_ring",
+    "hip_actuator_planet",
+    "base_rod",
+    "foot",
+    "drive_sprocket",
+    "hip_mount_screw",
+)
 
 
 @pytest.fixture(scope="module")
