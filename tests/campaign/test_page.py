@@ -7,7 +7,8 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from pareto_monoped.campaign.page import _strip, campaign_page
+from pareto_monoped.campaign import page as page_module
+from pareto_monoped.campaign.page import _strip, campaign_page, write_results
 from tests.campaign.support import content_of, made_campaign
 
 AXES = 'motors = ["U8", "U10"]\nseeds = [1, 2, 3]'
@@ -113,3 +114,12 @@ def test_dots_of_hypervolumes_lie_between_the_ends_of_their_strip():
     assert [float(x) for x in re.findall(r'cx="([^"]+)"', drawn)] == [6.0, 124.0, 65.0]
     assert re.findall(r'x[12]="([^"]+)"', drawn) == ["6", "124"]
     assert re.findall(r'cx="([^"]+)"', _strip([5.0], (5.0, 5.0))) == ["6.0"]
+
+
+@pytest.mark.parametrize("asked", [(), ("page",), ("table",), ("page", "table")], ids="-".join)
+def test_what_is_asked_for_is_written_and_nothing_else(tmp_path, monkeypatch, made, asked):
+    campaign, results = made
+    monkeypatch.setattr(page_module, "results_of", lambda *_: results)
+    paths, wrote = {name: tmp_path / name for name in asked}, []
+    write_results(campaign, [], {}, **{"page": None, "table": None} | paths, force=False, wrote=wrote.append)
+    assert set(wrote) == set(tmp_path.iterdir()) == set(paths.values())

@@ -4,6 +4,7 @@ import re
 import zlib
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -137,3 +138,9 @@ def test_weighted_runs_give_the_trial_of_least_cost(weighted):
             for h, e in zip(run["height_m"], run["energy_j"], strict=True)
         ]
         assert card.trials.trial[row] == run["trial"].iloc[int(np.argmin(costs))]
+
+
+def test_axes_are_what_trials_differ_in():
+    columns = {"same": [1.0, 1.0], "one": [None, 2.0], "other": [1.0, 2.0], "motor": [0, 1]}
+    card = SimpleNamespace(trials=SimpleNamespace(columns=columns, packed={}), robust=None)
+    assert page_module._axes([card]) == ["other"]
