@@ -53,9 +53,9 @@ def scored(space, values, *, feasible, digits):
 
 
 def searched(space, settings, *, feasible, digits, restored):
-    """Eight generations and the last state; ``restored``: each by a new algorithm that goes on from the last state."""
+    """Some generations and the last state; ``restored``: each by a new algorithm that goes on from the last state."""
     algorithm, history = Evolution(space, settings, 5), []
-    for generation in range(8):
+    for generation in range(12 if space is SPACES["whole"] else 8):
         if restored and generation:
             state = json.loads(json.dumps(algorithm.state()))
             algorithm = Evolution(space, settings, 9)
