@@ -44,6 +44,7 @@ def test_a_budget_that_ends_before_the_last_weight_is_refused_with_the_number(tm
         load_study(written(tmp_path, 20, [0.2, 0.5, 0.8]))
 
 
+@pytest.mark.long
 def test_a_shared_budget_reaches_the_last_weight_and_a_cut_one_says_where_it_ended(tmp_path):
     study = load_study(written(tmp_path, 60, [0.2, 0.5, 0.8]))
     cut = run(study, tmp_path / "w.db", evaluations=24)

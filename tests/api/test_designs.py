@@ -66,7 +66,7 @@ def test_rows_of_a_study_jump_with_the_motor_that_they_name(u8):
     assert pm.build_robot(front.iloc[0], motor="U8").mass_kg == pytest.approx(front["mass_kg"][0], rel=1e-9)
 
 
-@pytest.mark.parametrize("study", ["two", "joints"])
+@pytest.mark.parametrize("study", ["two", pytest.param("joints", marks=pytest.mark.long)])
 def test_every_row_of_a_stored_study_jumps_with_its_own_motors_in_the_order_given(study, request):
     stored = request.getfixturevalue(study)
     rows = stored.trials[stored.trials["status"] == "ok"].iloc[::-1]

@@ -50,6 +50,7 @@ def test_paths_and_text_name_the_same_files_in_a_study(keys, motor, tmp_path):
     assert pm.Study.from_toml(file, **values) == pm.Study.from_toml(file, **as_text(values))
 
 
+@pytest.mark.long
 def test_a_study_runs_with_a_motor_by_its_path(motor, tmp_path):
     study = pm.Study.define(**TINY | {"evaluations": 4}, motor=motor, rules="paper")
     assert pm.run(study, tmp_path / "s.db").motors(0) == ("my", "my")

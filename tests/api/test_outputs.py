@@ -28,6 +28,7 @@ def test_a_design_is_exported_as_by_the_command_line(tmp_path):
         pm.export(C.replace({"stiffness_n_per_m": 9.0}), tmp_path / "api", formats=["mjcf"])
 
 
+@pytest.mark.long
 def test_a_film_of_a_jump_is_written_by_its_ending(tmp_path):
     from PIL import Image
 

@@ -37,6 +37,7 @@ class Counting(ThreadPoolExecutor):
         return super().submit(*arguments)
 
 
+@pytest.mark.long
 def test_exports_of_an_executor_are_those_made_here(here, tmp_path):
     two = [replace(here, folder=tmp_path / name) for name in ("one", "two")]
     told, whole = [], []

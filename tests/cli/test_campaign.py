@@ -149,6 +149,7 @@ def test_json_is_a_line_per_generation_and_per_study(tmp_path, capsys):
     assert events[-1]["event"] == "end"
 
 
+@pytest.mark.long
 def test_a_working_directory_that_was_deleted_is_named_rather_than_an_output(tmp_path):
     """Starting a process asks for it; what the system said read as if the table could not be written."""
     file = written(tmp_path, "seeds = [1]", SMALL.replace("40", "20"))

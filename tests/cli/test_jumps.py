@@ -229,6 +229,7 @@ def test_gears_that_do_not_last_their_duty_get_one_line_of_advice(capsys):
     assert "gear_life_jumps" not in paper
 
 
+@pytest.mark.long
 def test_hip_and_knee_may_have_different_motors(capsys, tmp_path):
     both = ("--hip-motor", "U8", "--knee-motor", "VT8020")
     mixed, swapped, one = (

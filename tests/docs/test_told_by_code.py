@@ -294,6 +294,10 @@ def python():
     yield f"legs with the U8 weigh about {spans[0]} kg, those with the VT8020, the default, {spans[1]} kg"
 
 
-@pytest.mark.parametrize("page", [actuators, losses, model, python], ids=lambda one: one.__name__)
+@pytest.mark.parametrize(
+    "page",
+    [actuators, losses, pytest.param(model, marks=pytest.mark.long), python],
+    ids=["actuators", "losses", "model", "python"],
+)
 def test_figures_are_those_that_the_package_computes(page):
     assert untold(f"docs/{page.__name__}.md", page()) == []

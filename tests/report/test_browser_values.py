@@ -281,6 +281,7 @@ def test_the_curves_over_time_are_the_jumps(tab, mixed):
     assert charts[0][1] == pytest.approx(peaks)
 
 
+@pytest.mark.long
 def test_the_picture_shows_the_lift_off_and_the_vertical_line_its_moment(tab, mixed):
     j, _ = knee_jump(tab, mixed)
     end = j["time_s"][-1]

@@ -120,6 +120,7 @@ def test_three_objectives_have_a_chart_with_a_third_as_colour(three, three_paylo
     tab.quiet(file)
 
 
+@pytest.mark.long
 def test_two_fronts_lie_in_one_chart_by_either_energy(two, two_payload, folder, open_tab):
     file = written(folder, "two_fronts.html", two_payload)
     tab = open_tab(file)

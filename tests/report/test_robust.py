@@ -170,6 +170,7 @@ def test_the_scripts_read_the_same_numbers(shown, stored, browser):
     assert "electrical_energy_j.p95" in names
 
 
+@pytest.mark.long
 @pytest.mark.browser
 def test_the_page_tells_numerical_and_physical_tests_apart(shown, stored, searched, folder, open_tab):
     file = folder / "robust.html"

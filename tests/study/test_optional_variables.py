@@ -74,6 +74,7 @@ def test_the_report_has_axes_for_them(db, tmp_path, capsys):
         assert label in text
 
 
+@pytest.mark.long
 def test_an_export_builds_and_replays_it(unchecked, db, tmp_path):
     assert cli(["export", str(db), "--knee", "-o", str(tmp_path / "knee"), "--formats", "mjcf"]) == 0
     record = json.loads((tmp_path / "knee" / "design.json").read_text())
