@@ -14,7 +14,7 @@ SHARED := -n $(JOBS) --dist loadfile --no-loadscope-reorder
 
 help:
 	@echo "make pareto     set up, then: actuator map, two fronts, report, knee design, its CAD"
-	@echo "make test       set up, then the tests (eight to twelve minutes)"
+	@echo "make test       set up, then the tests (seven minutes on two cores)"
 	@echo "make test-long  the tests that take longer, too"
 	@echo "make lint       ruff and mypy"
 	@echo "make docs       the documentation as a site: build/docs/index.html"
