@@ -96,7 +96,7 @@ _WORTH_ALL = 20
 
 
 def basis(folder: Path, *, ready: bool = True) -> None:
-    """Files that every call finds; if ``ready``, all of the package is then imported when calls are forked."""
+    """Make the files that every call finds; if ``ready``, import all of the package before calls are forked."""
     from pareto_monoped import cli
 
     folder.mkdir()

@@ -70,7 +70,7 @@ def strike_shares(stage: Stage, width_mm: Floats, required: tuple[float, float])
         return logs
 
     usual = np.full((2, len(width_mm)), np.log(_usual_share(stage)))
-    # One more cycle of the duty's highest level in each jump is more than gears carry that are just wide enough for it.
+    # Gears that are just wide enough for their duty do not carry one more cycle of its highest level in each jump.
     less = spare(usual) < 0.0
     low, high = np.where(less, np.log(_LOWEST_SHARE), usual), np.where(less, usual, np.log(_HIGHEST_SHARE))
     at_low, at_high = spare(low), spare(high)
