@@ -77,6 +77,7 @@ LESS = {
     "robust": ("--every", "20"),  # of a front that has a quarter of the designs
     "run studies/robust.toml": ("--evaluations", "3"),
     "run studies/case_c.toml": ("--evaluations", "120"),
+    "limit": ("--jumps", "60"),
 }
 """Beginnings of commands that are run with further words, since they take long as they are shown."""
 ELSEWHERE = {"pareto-monoped simulate --case C --gif jump.gif"}
@@ -98,6 +99,7 @@ def test_commands_of_the_page_run_and_print_what_it_shows(
     page, tmp_path, monkeypatch, capsys, tmp_path_factory, searches, pytestconfig
 ):
     shutil.copytree(ROOT / "studies", tmp_path / "studies", ignore=shutil.ignore_patterns("*.db*"))
+    shutil.copytree(ROOT / "examples" / "legs", tmp_path / "examples" / "legs")
     (tmp_path / "reports").mkdir()
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
