@@ -77,13 +77,13 @@ LESS = {
     "robust": ("--every", "20"),  # of a front that has a quarter of the designs
     "run studies/robust.toml": ("--evaluations", "3"),
     "run studies/case_c.toml": ("--evaluations", "120"),
-    "limit": ("--jumps", "60"),
+    "limit": ("--jumps", "600"),
 }
 """Beginnings of commands that are run with further words, since they take long as they are shown."""
 ELSEWHERE = {"pareto-monoped simulate --case C --gif jump.gif"}
 """Commands that only long tests run here, as they mesh a robot: tests/cli/test_watching.py has them."""
-LONG = {"studies.md"}
-"""Pages whose commands take as long as those of all others: a campaign over motors, with its report."""
+LONG = {"limit.md", "studies.md"}
+"""Pages whose commands take as long as those of all others: a campaign over motors, and searches of torques."""
 
 
 @pytest.mark.usefixtures("unchecked", "few_samples")
