@@ -100,7 +100,7 @@ def _tips(winners: list[Actuator]) -> str:
         for chain in gearbox_chains(one):
             for start in least:
                 if chain.name.startswith(start):
-                    least[start] = min(least[start], chain.worst_mm[0] / one.gears.module_mm)
+                    least[start] = min(least[start], float(chain.worst_mm[0] / one.gears.module_mm))
     return ", ".join(f"{value:.3f}" for value in least.values())
 
 
