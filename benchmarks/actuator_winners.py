@@ -95,7 +95,7 @@ def _figures(maps: list[ActuatorMap]) -> Iterator[tuple[str, str]]:
 
 def _tips(winners: list[Actuator]) -> str:
     """Least clearance and width of tips at the worst of their limits."""
-    least = {"clearance of the ": np.inf, "width of the ": np.inf}
+    least: dict[str, float] = {"clearance of the ": np.inf, "width of the ": np.inf}
     for one in winners:
         for chain in gearbox_chains(one):
             for start in least:
