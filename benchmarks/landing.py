@@ -63,8 +63,8 @@ def main() -> None:
         of_front = landed(front[some], maps, calibration)
         safety = of_front.landing_safety
         print("| designs of the front | survive their landing | least safety over the required one |\n|---|---|---|")
-        numbers = f"{len(some)} of {len(front)} | {np.count_nonzero(of_front.landing_ok)}"
-        print(f"| {numbers} | {safety.min():.2f} to {safety.max():.2f} |\n")
+        tried = f"{len(some)} of {len(front)} | {np.count_nonzero(of_front.landing_ok)}"
+        print(f"| {tried} | {safety.min():.2f} to {safety.max():.2f} |\n")
     print("| case | first / steady height, m | steady from hop | energy, J | from the battery, J | hops per minute |")
     print("|---|---|---|---|---|---|")
     robots, control = robot_arrays(designs, maps, calibration.mass), control_of(designs)
