@@ -309,6 +309,14 @@ def test_scales_are_written_as_paper_to_part(scale, text):
     assert text in [label.text for label in paper.labels]
 
 
+def test_sheets_have_the_sizes_of_the_a_series():
+    """ISO 216: the longer side of An is 1000 mm over the fourth root of 2^(2n - 1), less what is below 1 mm."""
+    for size in SIZES:
+        n = int(size.name.removeprefix("A"))
+        sides = sorted(int(1000.0 / 2.0 ** ((2 * k - 1) / 4) + 0.2) for k in (n, n + 1))
+        assert [size.width_mm, size.height_mm] == (sides if size.name == "A4" else sides[::-1])
+
+
 def rows_of(table):
     """What a table says, its rows from the top down, each as the texts with their places from the left."""
     rows = {}
