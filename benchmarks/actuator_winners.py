@@ -65,7 +65,9 @@ def _crowded(maps: list[ActuatorMap]) -> str:
 def _figures(maps: list[ActuatorMap]) -> Iterator[tuple[str, str]]:
     all_of_them = [winner for found in maps for winner in _winners(found)]
     count = len(all_of_them)
-    yield "of module 0.5 mm", f"{sum(one.gears.module_mm == 0.5 for one in all_of_them)} of {count}"
+    modules = [one.gears.module_mm for one in all_of_them]
+    yield "module, mm", f"{min(modules):g} to {max(modules):g}"
+    yield "of module 0.5 mm", f"{modules.count(0.5)} of {count}"
     own = _winners(map_for(MOTOR))
     yield f"with profile shift, of the {MOTOR}", f"{sum(one.gears.is_shifted for one in own)} of {len(own)}"
     raised = [float(np.degrees(one.gears.working_angle_rad)) for one in all_of_them if one.gears.centre_shift]
@@ -86,6 +88,20 @@ def _figures(maps: list[ActuatorMap]) -> Iterator[tuple[str, str]]:
         fewer.append(len(_winners(found)) - len(_winners(flat)))
     yield "heavier with straight planets, mean of each motor, g", f"{min(grams):.0f} to {max(grams):.0f}"
     yield "gearboxes fewer with straight planets, of each motor", f"{min(fewer)} to {max(fewer)}"
+    yield "least clearance and width of tips at worst, modules", _tips(all_of_them)
+    paper = [winner for name in motor_names() for winner in _winners(map_of(load_motor(name), "paper"))]
+    yield f"the same of the {len(paper)} winners under `paper`", _tips(paper)
+
+
+def _tips(winners: list[Actuator]) -> str:
+    """Least clearance and width of tips at the worst of their limits."""
+    least: dict[str, float] = {"clearance of the ": np.inf, "width of the ": np.inf}
+    for one in winners:
+        for chain in gearbox_chains(one):
+            for start in least:
+                if chain.name.startswith(start):
+                    least[start] = min(least[start], float(chain.worst_mm[0] / one.gears.module_mm))
+    return ", ".join(f"{value:.3f}" for value in least.values())
 
 
 def _uncrowned(found: ActuatorMap) -> ActuatorSettings:

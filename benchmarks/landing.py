@@ -1,20 +1,24 @@
 """Loads of jump and landing, and hops, of the paper's four cases with parts of today; the tables of docs/landing.md.
 
-python benchmarks/landing.py [--hops N]
+python benchmarks/landing.py [STUDY.db] [--hops N]
+
+With a stored study, also whether designs of its front survive their landings.
 """
 
 import argparse
+from pathlib import Path
 
 import numpy as np
 
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.design import PAPER_CASES, complete, control_of
+from pareto_monoped.design import NAMES, PAPER_CASES, complete, control_of
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.landing import best_landed, hops, landed
 from pareto_monoped.jump.variations import take
 from pareto_monoped.measures import measure
 from pareto_monoped.robot.population import robot_arrays
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.strength.groups import REQUIRED_MEASURES
 
 LOADS = (
@@ -23,10 +27,14 @@ LOADS = (
 )
 
 
+DESIGNS = 60  #: Of a front, evenly spread; our own choice: a few seconds.
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--hops", type=int, default=30)
-    count = parser.parse_args().hops
+    parser.add_argument("db", type=Path, nargs="?", help="a stored study")
+    given = parser.parse_args()
     designs = complete(np.array([case.design.as_array() for case in PAPER_CASES.values()]))
     maps, calibration = map_for("VT8020"), load_calibration("reference")
     jumps, found = Evaluator(maps, calibration)(designs), landed(designs, maps, calibration)
@@ -49,11 +57,19 @@ def main() -> None:
         numbers = (found.landing_fall_m[k], found.landing_absorbed_j[k], found.landing_returned_j[k])
         print(f"| {case} | {' | '.join(f'{value:.2f}' for value in (*numbers, found.landing_time_s[k]))} |")
     print()
+    if given.db:
+        front = read_study(given.db).front()[list(NAMES)].to_numpy(dtype=np.float64)
+        some = np.linspace(0, len(front) - 1, DESIGNS).round().astype(int)
+        of_front = landed(front[some], maps, calibration)
+        safety = of_front.landing_safety
+        print("| designs of the front | survive their landing | least safety over the required one |\n|---|---|---|")
+        tried = f"{len(some)} of {len(front)} | {np.count_nonzero(of_front.landing_ok)}"
+        print(f"| {tried} | {safety.min():.2f} to {safety.max():.2f} |\n")
     print("| case | first / steady height, m | steady from hop | energy, J | from the battery, J | hops per minute |")
     print("|---|---|---|---|---|---|")
     robots, control = robot_arrays(designs, maps, calibration.mass), control_of(designs)
     for k, case in enumerate(PAPER_CASES):
-        made = hops(take(robots, np.array([k])), control[k : k + 1], calibration, count)
+        made = hops(take(robots, np.array([k])), control[k : k + 1], calibration, given.hops)
         heights = f"{made.height_m[0]:.3f} / {made.height_m[-1]:.3f}"
         energies = f"{made.energy_j[-1]:.1f} | {made.electrical_energy_j[-1]:.0f}"
         print(f"| {case} | {heights} | {made.steady_from} | {energies} | {made.hops_per_minute:.1f} |")

@@ -26,6 +26,7 @@ from pathlib import Path
 from pareto_monoped.files import write_text
 
 ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", *(path for room in ("docs", "benchmarks") for path in sorted((ROOT / room).glob("*.md")))]
 TABLE = re.compile(r"(<!-- made by: (.+?) -->\n)((?:\|.*\n)+)")
 CONSOLE = re.compile(r"(?<=^```console\n).*?(?=^```)", re.S | re.M)
 MADE_BY = {"make pareto": "pareto-monoped pareto"}  #: Targets of make that print figures, and what they run.
@@ -183,7 +184,7 @@ def _apart(shown: str, printed: str) -> float:
 def main() -> None:
     """Rewrite the pages; exit 1 if something could not be made again."""
     parser = argparse.ArgumentParser(description="Make the figures of README and docs again.")
-    parser.add_argument("pages", nargs="*", type=Path, help="default: README.md and docs/*.md")
+    parser.add_argument("pages", nargs="*", type=Path, help="default: README.md, docs/*.md, benchmarks/*.md")
     only = parser.add_mutually_exclusive_group()
     only.add_argument("--tables", action="store_true", help="only the marked tables")
     only.add_argument("--outputs", action="store_true", help="only what commands print")
@@ -191,9 +192,10 @@ def main() -> None:
     asked = parser.parse_args()
     faults = []
     with tempfile.TemporaryDirectory() as scratch:
-        for page in asked.pages or [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
-            folder = Path(scratch) / page.stem
+        for page in asked.pages or PAGES:
+            folder = Path(scratch) / page.parent.name / page.stem
             shutil.copytree(ROOT / "studies", folder / "studies", ignore=shutil.ignore_patterns("*.db*"))
+            shutil.copytree(ROOT / "examples" / "legs", folder / "examples" / "legs")
             (folder / "reports").mkdir()
             text = page.read_text(encoding="utf-8")
             if not asked.outputs:

@@ -84,6 +84,8 @@ def interval_tenths(sun_teeth: NDArray[np.int64], ring_teeth: NDArray[np.int64])
     return 10 * (sun_teeth + ring_teeth) // sun_teeth
 
 
+_NEAR = 32
+"""How many sets of every interval are looked at first, the lightest at the least width that any set has."""
 _FIRST = 4
 """How many sets of every interval are rated first, the lightest at a width that they cannot go below."""
 
@@ -254,16 +256,24 @@ class _Rating:
         return found
 
     def rate_fitting(self, rows: NDArray[np.intp]) -> None:
-        """Rate sets that break no other rule: a few of each interval, then all that may be lighter than the second.
+        """Rate sets that break no other rule, as far as they may be lighter than the second of their interval.
 
-        A set that no width makes strong enough may be lighter too: then its strength alone keeps it out.
+        The lightest of each interval are looked at first, and a few of them are rated: most others are then too heavy
+        even at the least width. A set that no width makes strong enough may be lighter too: then its strength alone
+        keeps it out.
         """
-        tenths, bounded = self.screen.tenths[rows], self._bounded(rows)
-        least = bounded.least_mass_kg(self.judge)
-        hopeless = bounded.bounds.hopeless
-        first = ~hopeless & (_rank(tenths, np.where(hopeless, np.inf, least)) < _FIRST)
+        tenths = self.screen.tenths[rows]
+        light = self._at_least_width_kg(rows)
+        near = _rank(tenths, light) < _NEAR
+        bounded = self._bounded(rows[near])
+        least, hopeless = bounded.least_mass_kg(self.judge), bounded.bounds.hopeless
+        first = ~hopeless & (_rank(tenths[near], np.where(hopeless, np.inf, least)) < _FIRST)
         self.rate(bounded.where(first))
-        self.rate(bounded.where(~first & (least <= self.lightest(1)[tenths])))
+        second = self.lightest(1)[tenths]
+        self.rate(bounded.where(~first & (least <= second[near])))
+        left = ~near & (light <= second)
+        bounded = self._bounded(rows[left])
+        self.rate(bounded.where(bounded.least_mass_kg(self.judge) <= second[left]))
 
     def rate_kept_out(self, rows: NDArray[np.intp], fitting_tenths: NDArray[np.int64]) -> None:
         """Rate sets that break one other rule, where that matters.
@@ -276,12 +286,16 @@ class _Rating:
         lightest = self.lightest(0)[tenths]
         rivals = np.isfinite(lightest)
         least = np.full(len(rows), np.inf)
-        least[rivals] = self.judge.mass_kg(screen.gears.where(rows[rivals]), screen.width_mm[rows[rivals]])
+        least[rivals] = self._at_least_width_kg(rows[rivals])
         chosen = (least <= lightest) & (rivals | ~np.isin(tenths, fitting_tenths))
         bounded = self._bounded(rows[chosen])
         hopeful = ~(rivals[chosen] & bounded.bounds.hopeless)
         bounded = bounded.where(hopeful)
         self.rate(bounded.where(bounded.least_mass_kg(self.judge) <= lightest[chosen][hopeful]))
+
+    def _at_least_width_kg(self, rows: NDArray[np.intp]) -> Floats:
+        """Return the masses of sets that are not rated, at the least face width of their modules."""
+        return self.judge.mass_kg(self.screen.gears.where(rows), self.screen.width_mm[rows])
 
     def _bounded(self, rows: NDArray[np.intp]) -> "_Bounded":
         judge = self.judge

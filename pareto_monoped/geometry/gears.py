@@ -25,7 +25,7 @@ the space (Litvin, Gear Geometry and Applied Theory, ch. 6, has the same curve).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
@@ -118,10 +118,10 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 """Along a root's curve; its integrals then have 10 digits or more for 12 teeth and up."""
 
 
-def _below_mm(gear: "ExternalGear") -> tuple[Numbers, Numbers]:
-    """Area and polar moment of a gear inside the lines from its axis to the form circle's points of its teeth."""
-    teeth, module, angle = _array(gear.teeth), _array(gear.module_mm), gear.pressure_angle_rad
-    shift = gear.generating_shift
+def _roots(teeth: Numbers, shift: Numbers, angle: float) -> tuple[Numbers, Numbers, Numbers]:
+    """Area and polar moment, for one of the teeth, inside the lines from a gear's axis to the form circle's points of
+    its teeth, and the radius of that circle, in modules.
+    """
     end = _root_end_rad(teeth, shift, angle)
     depth = DEDENDUM - FILLET - shift
     bottom = 0.5 * teeth - DEDENDUM + shift
@@ -129,18 +129,29 @@ def _below_mm(gear: "ExternalGear") -> tuple[Numbers, Numbers]:
     polar = area * np.square(bottom) / 2.0
     for node, weight in zip(_NODES, _WEIGHTS, strict=True):
         theta = 0.5 * end * (1.0 + node)
-        opened = depth / np.square(np.cos(theta))
-        across = depth * np.tan(theta) + FILLET * np.sin(theta)
-        along = 0.5 * teeth - depth - FILLET * np.cos(theta)
+        sin, cos = np.sin(theta), np.cos(theta)
+        opened = depth / np.square(cos)
+        across = depth * np.tan(theta) + FILLET * sin
+        along = 0.5 * teeth - depth - FILLET * cos
         squared = np.square(across) + np.square(along)
         # Of the squared distance times the angle: the point's own motion, less the gear's turn.
-        swept = along * (opened + FILLET * np.cos(theta)) - across * FILLET * np.sin(theta)
+        swept = along * (opened + FILLET * cos) - across * FILLET * sin
         swept = swept - squared * opened / (0.5 * teeth)
         area, polar = area + 0.5 * end * weight * swept, polar + 0.25 * end * weight * swept * squared
     along, across = _generated(teeth, shift, end, angle)
     form, half = np.square(along) + np.square(across), np.pi / teeth - np.arctan2(across, along)
-    area, polar = area + form * half, polar + 0.5 * np.square(form) * half
-    return teeth * area * np.square(module), teeth * polar * np.square(np.square(module))
+    return area + form * half, polar + 0.5 * np.square(form) * half, np.hypot(along, across)
+
+
+def _roots_of_many(teeth: Numbers, shift: Numbers, angle: float) -> tuple[Numbers, Numbers, Numbers]:
+    """Return the same, worked out once for all gears of as many teeth with the same shift: the others repeat them."""
+    if not np.ndim(teeth) and not np.ndim(shift):
+        return _roots(_array(teeth), shift, angle)
+    pairs = np.empty(np.broadcast_shapes(np.shape(teeth), np.shape(shift)), dtype=np.complex128)
+    pairs.real, pairs.imag = teeth, shift
+    some, place = np.unique(pairs, return_inverse=True)
+    area, polar, form = _roots(some.real.copy(), some.imag.copy(), angle)
+    return area[place], polar[place], form[place]
 
 
 def _ring_fillets_mm2(gear: "InternalGear", root_mm: Numbers) -> Numbers:
@@ -178,6 +189,7 @@ class _Teeth:
     pressure_angle_rad: float = PRESSURE_ANGLE_RAD
     shift: Numbers = 0.0  # profile shift x over module, positive outwards
     tip_shortening: Numbers = 0.0  # by how much the tips are cut short, over module
+    _known: tuple[Numbers, Numbers] | None = field(default=None, init=False, repr=False, compare=False)
 
     @property
     def pitch_radius_mm(self) -> Numbers:
@@ -319,8 +331,10 @@ class InternalGear(_Teeth):
 
 
 def _external_mm(gear: ExternalGear) -> tuple[Numbers, Numbers]:
-    (low, low_polar), (high, high_polar) = _below_mm(gear), _between_mm(gear, gear.form_radius_mm, gear.tip_radius_mm)
-    return low + high, low_polar + high_polar
+    teeth, square = _array(gear.teeth), np.square(_array(gear.module_mm))
+    low, low_polar, form = _roots_of_many(gear.teeth, gear.generating_shift, gear.pressure_angle_rad)
+    high, high_polar = _between_mm(gear, gear.module_mm * form, gear.tip_radius_mm)
+    return teeth * low * square + high, teeth * low_polar * np.square(square) + high_polar
 
 
 def _internal_mm(gear: InternalGear) -> tuple[Numbers, Numbers]:
@@ -333,11 +347,15 @@ def _internal_mm(gear: InternalGear) -> tuple[Numbers, Numbers]:
 
 
 def _both_mm(gear: ExternalGear | InternalGear) -> tuple[Numbers, Numbers]:
-    """Area and polar moment of a gear, or of the hole of a ring; kept for single gears, which several prisms share."""
-    try:
-        return _remembered_mm(gear)
-    except TypeError:  # arrays have no hash
-        return _outline_mm(gear)
+    """Area and polar moment of a gear, or of the hole of a ring; kept, because several prisms share them."""
+    if gear._known is None:
+        try:
+            known = _remembered_mm(gear)
+        except TypeError:  # arrays have no hash
+            known = _outline_mm(gear)
+        object.__setattr__(gear, "_known", known)
+        return known
+    return gear._known
 
 
 def _outline_mm(gear: ExternalGear | InternalGear) -> tuple[Numbers, Numbers]:

@@ -88,6 +88,12 @@ def damping_s_per_m(rebound_resilience: Floats) -> Floats:
     return np.asarray(0.5 * (low + high) / TEST_M_PER_S)
 
 
+@functools.lru_cache(maxsize=16)
+def bumper_damping_s_per_m(rebound_resilience: float) -> float:
+    """Return ``damping_s_per_m`` of one material, which every batch of jumps asks for again."""
+    return float(damping_s_per_m(np.array([rebound_resilience]))[0])
+
+
 def slow_torque_n_m(stop: EndStop, beyond_rad: Floats) -> Floats:
     """Return the torque with which an end stop pushes back slowly at angles beyond its end of the range."""
     d = stop.impedance * np.clip(np.asarray(beyond_rad) / stop.width_rad, 0.0, 1.0)

@@ -21,7 +21,7 @@ from pareto_monoped.jump import model
 from pareto_monoped.jump.calibration import Calibration, FadeGate
 from pareto_monoped.jump.controller_record import KNEE, OBSERVED, RECORD, RECORD_NUMBERS
 from pareto_monoped.jump.document import template_mjcf
-from pareto_monoped.jump.end_stops import EndStops, constraints, damping_s_per_m, end_stops
+from pareto_monoped.jump.end_stops import EndStops, bumper_damping_s_per_m, constraints, end_stops
 from pareto_monoped.jump.model import StartPose, start_pose
 from pareto_monoped.jump.quiet import quiet
 from pareto_monoped.jump.variations import Variations, vary_fields, vary_records
@@ -289,8 +289,8 @@ def _set_load_constants(records: Records, robots: RobotArrays, calibration: Cali
             lever_m = 1e-3 * part.lever_mm
             records["bumper_n_m"][:, k] = lever_m * part.bumper.scale_n
             records["bumper_per_rad"][:, k] = part.lever_mm / part.bumper.diameter_mm
-            chi = damping_s_per_m(np.array([part.bumper.elastomer.rebound_resilience]))
-            records["bumper_s_per_rad"][:, k] = chi * lever_m
+            chi_s_per_m = bumper_damping_s_per_m(part.bumper.elastomer.rebound_resilience)
+            records["bumper_s_per_rad"][:, k] = chi_s_per_m * lever_m
     if calibration.drive.elastic:
         records["drive_n_m_per_rad"] = robots.drive_stiffness_n_m_per_rad
         records["drive_n_m_s_per_rad"] = model.drive_damping_n_m_s_per_rad(robots, calibration)

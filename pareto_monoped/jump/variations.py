@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from pareto_monoped.design import CONTROL, PAPER_CONTROL, Floats
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.controller_record import KNEE, TRACKING
-from pareto_monoped.jump.end_stops import damping_s_per_m
+from pareto_monoped.jump.end_stops import bumper_damping_s_per_m, damping_s_per_m
 from pareto_monoped.jump.model import FOOT_GEOM, coordinates, joint_places, motor_places
 from pareto_monoped.robot.population import JointStops, RobotArrays
 from pareto_monoped.robot.units import BODIES, JOINTS
@@ -112,7 +112,7 @@ def vary_records(records: Any, stops: JointStops, calibration: Calibration, vari
     records["loss"][:, KNEE] += (1.0 - records["loss"][:, KNEE]) * (variations.chain_loss - 1.0) * (1.0 - chain) / chain
     for k, joint in enumerate(JOINTS):
         rebound = getattr(stops, joint).bumper.elastomer.rebound_resilience
-        changed = damping_s_per_m(rebound * variations.rebound) / damping_s_per_m(np.array([rebound]))
+        changed = damping_s_per_m(rebound * variations.rebound) / bumper_damping_s_per_m(rebound)
         records["bumper_s_per_rad"][:, k] *= changed
     records["delay_periods"] += np.round(variations.delays_s / calibration.simulation.period_s)
 

@@ -8,23 +8,30 @@ import numpy as np
 import pytest
 
 import tests.test_architecture as house
+from pareto_monoped.actuator import gearset, layout, tolerances
 from pareto_monoped.actuator.motors import load_motor
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.analysis import alternatives, at_bounds, choices, compare, robustness, sensitivity
+from pareto_monoped.analysis import alternatives, at_bounds, choices, compare, limit, robustness, sensitivity
+from pareto_monoped.cad.check import result
 from pareto_monoped.campaign import coordinator, grid, page
 from pareto_monoped.compute import chunks
+from pareto_monoped.definition.algorithms import PAPER_ITERATIONS
 from pareto_monoped.definition.goals import MIN_HEIGHT_M
 from pareto_monoped.definition.study import Study
 from pareto_monoped.design import CONTROL, LOWER, NAMES, PAPER_CASES, UPPER, columns, complete
-from pareto_monoped.jump import audit, peers, screen
+from pareto_monoped.jump import audit, controller, end_stops, landing, peers, screen, torques
 from pareto_monoped.jump.balance import balanced
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.gravity import least_energy_j
 from pareto_monoped.leg import stops
+from pareto_monoped.pareto import growth
 from pareto_monoped.report import resimulation, trials
+from pareto_monoped.robot.cost import RATES
 from pareto_monoped.robot.population import robot_arrays
+from pareto_monoped.search import archive, prediction, surrogate
 from pareto_monoped.strength import factors
+from pareto_monoped.study import simulator
 from pareto_monoped.uncertainty import samples, settings
 from tests.docs.prose import between, table, untold
 from tests.docs.scripts import imported
@@ -57,6 +64,12 @@ def told(ranges):
 
 SETTINGS = {
     "docs/actuators.md": [
+        f"{mm(1e-3 * gearset.CENTRE_TOLERANCE_MM)} off its place ({gearset.PIN_PLACE_MM:.3f} mm for the pin's hole, "
+        f"{gearset.NEEDLE_PLAY_MM:.3f} mm for the needles' play)",
+        f"tips must keep {tolerances._TIP_CLEARANCE:g} modules from the roots",
+        f"They must be at least {tolerances._TIP_WIDTH:g} modules wide",
+        f"touches more than {1e3 * result.GEAR_MESH.value:g} um too early",
+        f"stands {layout.NECK_PLAY_MM:g} +-{layout.NECK_WITHIN_MM:g} mm from its end bearing",
         f"thinner by {MAP.settings.parts.gears.backlash_modules:g} modules each",
         f"at least by {MAP.settings.parts.gears.backlash_least_mm:g} mm",
         f"may bring {RATED.overload_factor:g} times the peak torque once",
@@ -82,7 +95,39 @@ SETTINGS = {
         f"{compare._STUDENT} standard deviations",
     ],
     "docs/getting_started.md": [f"less than {choices.DEAR} times the least battery energy stored"],
+    "docs/landing.md": [
+        f"$l_c$ is {landing.LANDING.reach:g} times the length",
+        f"with $\\omega_f$ = {landing._FLIGHT_RAD_PER_S:g} rad/s",
+        f"the damper then takes at most {landing._MOST_STOPPED:g} times the rotor's speed",
+        f"In the first {1e3 * torques.EASE_S:g} ms, the torques go linearly",
+        f"touches, at least {landing._LEAST_FALL_M:g} m. $s$ is {landing.LANDING.stroke:g} (`stroke`)",
+        f"or the base is {landing._BASE_ROOM_M:g} m high",
+        f"$\\zeta$ = {landing.LANDING.damping_ratio:g} (`damping_ratio`)",
+        f"$c_x = 2 \\cdot {landing._FORWARD_RATIO:g}\\, m\\omega$",
+        f"within {landing.LANDING.lower_s:g} s (`lower_s`)",
+        f"slower than {controller.STILL_M_PER_S:g} m/s and {controller.STILL_RAD_PER_S:g} rad/s",
+        f"if the base sinks below {controller.SANK_M:g} m",
+        f"{len(landing.TRIED)} sets of `reach`",
+        f"repeat within {percent(landing._STEADY)}",
+    ],
+    "docs/limit.md": [
+        f"with {limit.LAW.knots} knots per joint",
+        f"Each of the four searches has {limit.JUMPS:,} jumps (`--jumps N`)",
+        f"searches knots (to {limit._MOST[limit.TRACKING]:g}) and C (to {limit._FIRST[limit.TRACKING][2]:g} N s/m)",
+        f"and {percent(limit._REACHES)} of it with {1e3 * limit._DELAY_S:g} ms of delay",
+        {8: "has an eighth of the candidates"}[limit._SHARE],
+        f"{simulator._BEFORE} jumps of the same study under the virtual leg",
+    ],
     "docs/model.md": [
+        f"{RATES.machining.allowance_mm:g} mm of allowance",
+        f"The hour is {RATES.machining.hour_eur:g} EUR",
+        f"Teeth take {RATES.gears.tooth_min:g} min and {RATES.gears.tooth_min_per_mm:g} min per mm",
+        f"at {RATES.gears.hour_eur:g} EUR per hour",
+        f"The hip stops {np.degrees(stops._HIP_END):g} degrees to both sides",
+        f"The hip's bumpers are bars of {stops._HIP_BUMPER.diameter_mm:g} mm",
+        f"a free inertia of {end_stops.IMPACT_KG_M2:g} kg m2",
+        f"meets the stop with {end_stops.IMPACT_M_PER_S:g} m/s",
+        f"$D$ = {end_stops.IMPEDANCE:g}, and $K$ is fitted",
         f"base at {PAPER_CASES['C'].design.start_height_m:g} m (`start_height_m`)",
         f"during the period, {1e3 * REFERENCE.simulation.control_period_s:g} ms under `reference`",
         f"$\\omega_s$ = {REFERENCE.drive.loss_speed_rad_per_s:g} rad/s",
@@ -122,6 +167,13 @@ SETTINGS = {
         {16: "all measures of sixteen probe designs"}[peers._DRAWN + len(PAPER_CASES)],
     ],
     "docs/studies.md": [
+        f"fitted anew to {prediction._TRAINING:,} simulated designs",
+        f"with more than {prediction._CUBIC_UP_TO} features it is a quadratic",
+        f"its errors at the latest {prediction._CORRECTING} designs",
+        f"the best in each of its {archive._POSTS} parts",
+        f"in which less than {percent(surrogate._HELD)} of the model's choices",
+        f"is expected to gain {growth._DOUBLING:g} of what the doubling before it gained",
+        f"with at most the paper's {PAPER_ITERATIONS} each",
         f"At most {percent(settings.MOST_FAILED)} may fail",
         f"A design must reach {MIN_HEIGHT_M:g} m",
         f"perturbations of {audit.PERTURBATION:.0e}".replace("e-06", "e-6"),
@@ -222,6 +274,16 @@ def actuators():
     less = eased.peak_gear_torque_knee_n_m / peaks
     yield f"for Case C, 0.4 rad brings the {struck[C]:.1f} times down to {less[C]:.1f} without loss of height"
     assert eased.height_m[C] >= jumps().height_m[C]
+    yield f"For the U8, the estimate is {1e5 * load_motor('U8').estimated_rotor_inertia_kg_m2():.2f}e-5 kg m2"
+    links = PAPER[:1].copy()
+    links[:, [NAMES.index(name) for name in ("thigh_length_m", "shank_length_m")]] = 0.4
+    robot = robot_arrays(links, MAP)
+    masses, at = robot.body_mass_kg[0], np.linalg.norm(robot.body_com_m[0][:, [0, 2]], axis=1)
+    _, thigh, shank = robot.body_inertia_kg_m2[0][:, 1, 1] + masses * at**2  # about hip and knee
+    fastest = 2.0 * np.pi / 0.2**2  # 1 rad in 0.2 s
+    knee, hip = fastest * shank, 0.5 * fastest * (thigh + masses[2] * 0.4**2 - shank)
+    yield f"Shank and foot ({shank:.3f} kg m2) need {knee:.1f} N m at the knee, {knee / 33.0:.2f} of"
+    yield f"need {hip:.1f} N m at the hip, {hip / 33.0:.2f} of it"
     yield f"The VT8020's estimate is {1e4 * load_motor('VT8020').rotor_inertia_kg_m2:.2f}e-4 kg m2"
 
 

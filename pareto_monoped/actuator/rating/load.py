@@ -7,7 +7,7 @@ import numpy as np
 
 from pareto_monoped.actuator.rating.geometry import TOOTH_DEPTH, contact_ratio_factor, root_contact_ratio_factor
 from pareto_monoped.geometry.gears import DEDENDUM, ExternalGear, InternalGear
-from pareto_monoped.geometry.shapes import Numbers
+from pareto_monoped.geometry.shapes import Floats, Numbers
 from pareto_monoped.materials import ElasticMaterial, GearGrade
 
 _K1 = {3: 2.1, 4: 3.9, 5: 7.5, 6: 14.9, 7: 26.8, 8: 39.1, 9: 52.8, 10: 76.6}
@@ -28,7 +28,7 @@ _RACK_STIFFNESS = 1.0 + 0.5 * (1.2 - DEDENDUM)
 FACE_STIFFNESS_SHARE = 0.85
 """c_gamma,beta over c_gamma,alpha (ISO 6336-1, clause 9.3.1)."""
 _REACH_STEPS = 12
-"""Of Newton's method for the face in contact: to rounding from a twentieth of the face on."""
+"""Of Newton's method for the face in contact, an even number: to rounding from a twentieth of the face on."""
 _TORSION_TO_MISALIGNMENT = 1.33
 """Misalignment that stands for an elastic deflection f_sh, without modified helix (ISO 6336-1, clause 7.5.2)."""
 
@@ -145,17 +145,44 @@ def face_load_factor(
     if crowning_um <= 0.0:
         excess = 0.5 * misalignment_um * face_stiffness / load_n_per_mm
         return np.where(excess <= 1.0, 1.0 + excess, 2.0 * np.sqrt(np.maximum(excess, 1.0)))[()]
-    middle = misalignment_um / (8.0 * crowning_um)
-    mean = load_n_per_mm / face_stiffness / (4.0 * crowning_um)
+    middle, mean = np.broadcast_arrays(
+        misalignment_um / (8.0 * crowning_um), load_n_per_mm / face_stiffness / (4.0 * crowning_um)
+    )
     above, below = 0.5 - middle, 0.5 + middle
-    reach = below
-    for _ in range(_REACH_STEPS):
-        up, down = np.minimum(reach, above), np.minimum(reach, below)
-        carried = np.square(reach) * (up + down) - (up**3 + down**3) / 3.0
-        reach = np.maximum(reach - (carried - mean) / (2.0 * reach * (up + down)), 1e-6)
-    everywhere = mean + (above**3 + below**3) / 3.0
-    squared = np.where(everywhere >= np.square(below), everywhere, np.square(reach))
-    return ((squared - np.square(np.maximum(-above, 0.0))) / mean)[()]
+    above_cubed, below_cubed = above**3, below**3
+    squared = np.atleast_1d(mean + (above_cubed + below_cubed) / 3.0)
+    partly = np.flatnonzero(squared < np.square(below))
+    known = (np.atleast_1d(values)[partly] for values in (mean, above, below, above_cubed, below_cubed))
+    squared[partly] = np.square(_reach(*known))
+    return ((squared.reshape(mean.shape) - np.square(np.maximum(-above, 0.0))) / mean)[()]
+
+
+def _reach(mean: Floats, above: Floats, below: Floats, above_cubed: Floats, below_cubed: Floats) -> Floats:
+    """Return s of ``face_load_factor`` where only a part of the face is in contact.
+
+    Powers take most of the time: each is worked out once, and no more for what two steps left as it was. Steps come in
+    pairs, so that this is the value after all of them.
+    """
+    found, left = np.empty(len(mean)), np.arange(len(mean))
+    reach, cubed = below, below_cubed
+    for _ in range(_REACH_STEPS // 2):
+        before = reach
+        for _ in range(2):
+            up, down = np.minimum(reach, above), np.minimum(reach, below)
+            cubes = np.where(reach < above, cubed, above_cubed) + np.where(reach < below, cubed, below_cubed)
+            carried = np.square(reach) * (up + down) - cubes / 3.0
+            reach = np.maximum(reach - (carried - mean) / (2.0 * reach * (up + down)), 1e-6)
+            cubed = reach**3
+        found[left] = reach
+        moving = reach != before
+        if 2 * moving.sum() < len(left):
+            left = left[moving]
+            mean, above, below, above_cubed, below_cubed, reach, cubed = (
+                values[moving] for values in (mean, above, below, above_cubed, below_cubed, reach, cubed)
+            )
+        if not len(left):
+            break
+    return found
 
 
 def root_face_load_factor(face_factor: Numbers, width_mm: Numbers, module_mm: Numbers) -> Numbers:
