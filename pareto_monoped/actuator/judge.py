@@ -282,7 +282,7 @@ class _Rating:
         set that fits. Next to a solution, a set that no width makes strong enough breaks a second rule and does not
         matter.
         """
-        screen, tenths = self.screen, self.screen.tenths[rows]
+        tenths = self.screen.tenths[rows]
         lightest = self.lightest(0)[tenths]
         rivals = np.isfinite(lightest)
         least = np.full(len(rows), np.inf)

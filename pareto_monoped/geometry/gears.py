@@ -150,8 +150,10 @@ def _roots_of_many(teeth: Numbers, shift: Numbers, angle: float) -> tuple[Number
     pairs = np.empty(np.broadcast_shapes(np.shape(teeth), np.shape(shift)), dtype=np.complex128)
     pairs.real, pairs.imag = teeth, shift
     some, place = np.unique(pairs, return_inverse=True)
-    area, polar, form = _roots(some.real.copy(), some.imag.copy(), angle)
-    return area[place], polar[place], form[place]
+    area, polar, form = (
+        np.asarray(values)[place.reshape(pairs.shape)] for values in _roots(some.real.copy(), some.imag.copy(), angle)
+    )
+    return area, polar, form
 
 
 def _ring_fillets_mm2(gear: "InternalGear", root_mm: Numbers) -> Numbers:

@@ -150,11 +150,11 @@ def face_load_factor(
     )
     above, below = 0.5 - middle, 0.5 + middle
     above_cubed, below_cubed = above**3, below**3
-    squared = np.atleast_1d(mean + (above_cubed + below_cubed) / 3.0)
-    partly = np.flatnonzero(squared < np.square(below))
-    known = (np.atleast_1d(values)[partly] for values in (mean, above, below, above_cubed, below_cubed))
+    squared = np.array(mean + (above_cubed + below_cubed) / 3.0)
+    partly = squared < np.square(below)
+    known = (np.asarray(values)[partly] for values in (mean, above, below, above_cubed, below_cubed))
     squared[partly] = np.square(_reach(*known))
-    return ((squared.reshape(mean.shape) - np.square(np.maximum(-above, 0.0))) / mean)[()]
+    return np.asarray((squared - np.square(np.maximum(-above, 0.0))) / mean)[()]
 
 
 def _reach(mean: Floats, above: Floats, below: Floats, above_cubed: Floats, below_cubed: Floats) -> Floats:
