@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, fields, replace
 from functools import lru_cache
+from os.path import isfile
 from pathlib import Path
 from typing import Any
 
@@ -225,7 +226,7 @@ def require_motor_name(name_or_path: str, *, key: str = "motor") -> None:
         MotorError: an unknown name.
     """
     path = Path(name_or_path)
-    if _shipped_name(name_or_path) is None and path.suffix != ".toml" and not path.is_file():
+    if _shipped_name(name_or_path) is None and path.suffix != ".toml" and not isfile(path):
         raise MotorError(unknown_name(key, name_or_path, motor_names(), ", or a TOML file"))
 
 
