@@ -176,6 +176,13 @@ def test_the_motor_that_these_spoil_is_good(tmp_path):
     assert contradiction(load_motor(written(tmp_path))) is None
 
 
+def test_motors_whose_search_would_take_too_long_are_refused(tmp_path):
+    heavy = "{{ mass_kg = 30.0, outer_diameter_mm = {}, length_mm = 50.0 }}"
+    assert load_motor(written(tmp_path, framed=heavy.format("400.0"))).framed.outer_diameter_mm == 400.0
+    with pytest.raises(MotorError, match="400"):
+        load_motor(written(tmp_path, framed=heavy.format("400.1")))
+
+
 @pytest.mark.parametrize("name", motor_names())
 def test_shipped_motors_are_consistent(name):
     assert contradiction(load_motor(name)) is None

@@ -183,6 +183,10 @@ def test_shipped_studies_are_sound(path):
     ("changes", "words"),
     [
         ({"motor": "VT8021"}, "study: motor = 'VT8021': must be one of VT8020, .*did you mean 'VT8020'"),
+        ({"motor": "V"}, "study: motor = 'V': must be one of VT8020"),
+        ({"motor": "V" * 1000}, "study: motor = 'V+[.]*'?: must be one of VT8020"),
+        ({"motor": "V" * 1001}, "of at most 1000 letters"),
+        ({"motor": ""}, "of at most 1000 letters"),
         ({"motor": ["U8", "U9"]}, "study: motor = 'U9'"),
         ({"hip_motor": "U8", "knee_motor": "VT8021"}, "study: knee_motor = 'VT8021'"),
         ({"calibration": "referense"}, "study: calibration = 'referense': .*did you mean 'reference'"),

@@ -99,6 +99,23 @@ def test_it_comes_to_rest_in_the_crouch_with_the_foot_below_the_hip():
     np.testing.assert_allclose(foot_x, 0.0, atol=0.06)
 
 
+def test_a_landing_ends_when_base_and_joints_have_been_slow_for_50_ms():
+    """0.01 m/s and 0.05 rad/s; in some of these designs the base is slow last, in others the hip or the knee."""
+    designs = wild_designs(14, 5)
+    designs = designs[landed(designs, MAP, ELASTIC).status == "landed"]
+    robots, control = robot_arrays(designs, MAP, ELASTIC.mass), control_of(designs)
+    population = population_of(robots, control, start_pose(robots, ELASTIC), ELASTIC)
+    population.run()
+    population.go_on(landing_records(robots, control, ELASTIC, LANDING, population.records.copy()), ELASTIC)
+    last = set()
+    for seen in population.observed():
+        fast = abs(seen[:, 5:8]) >= (0.01, 0.05, 0.05)
+        begin = np.flatnonzero(fast.any(axis=1))[-1]
+        assert (len(seen) - 1 - begin) * ELASTIC.simulation.timestep_s == pytest.approx(0.05, abs=2.1e-4)
+        last.add(int(fast[begin].argmax()))
+    assert len(last) > 1
+
+
 def test_motors_do_not_shake_in_flight():
     """Commands that swing to and fro from period to period: once at most, and 15 times if A were damped in full."""
     population = population_of(ROBOTS, control_of(CASES), start_pose(ROBOTS, ELASTIC), ELASTIC)

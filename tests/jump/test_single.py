@@ -51,6 +51,16 @@ def test_trace_and_measures_are_the_same_jump(any_jump):
     assert trace["time_s"][trace["foot_clearance_m"] <= 1e-9][-1] == pytest.approx(measures["lift_off_s"])
 
 
+def test_the_floor_holds_the_foot_sideways_unless_rails_hold_the_base(jump):
+    """With a coefficient of friction below 1; on rails nothing is said, as they take what the foot does not."""
+    sideways, upwards = jump.trace["contact_x_n"], jump.trace["contact_z_n"]
+    if jump.calibration.startswith("paper"):
+        assert np.isnan(sideways).all()
+    else:
+        assert np.all(np.abs(sideways) <= upwards)
+        assert 10.0 < np.abs(sideways).max() < 0.9 * upwards.max()
+
+
 def test_the_energy_is_that_of_the_trace(jump):
     measures, work = jump.measures, 0.0
     for joint in ("hip", "knee"):

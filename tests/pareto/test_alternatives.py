@@ -45,6 +45,12 @@ def test_each_next_design_is_the_farthest_from_all_that_are_taken(given_points, 
     assert len(found) == count or max(rest) < LEAST_DISTANCE
 
 
+def test_a_design_as_far_off_as_the_least_distance_is_one_more():
+    line = np.array([[0.0], [LEAST_DISTANCE], [0.999 * LEAST_DISTANCE]])
+    assert most_different(line, 0, 2, np.array([False])) == [1]
+    assert most_different(line[::2], 0, 2, np.array([False])) == []
+
+
 @given(points)
 def test_the_least_distance_is_at_least_half_of_the_best_possible(given_points):
     """Gonzalez 1985; the best possible by trying all subsets."""

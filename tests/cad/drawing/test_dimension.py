@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.cad.drawing.dimension import Mark, across, fits_between, frame, ladder, spread
+from pareto_monoped.cad.drawing.dimension import Mark, Tag, across, fits_between, frame, ladder, place_tags, spread
 from pareto_monoped.cad.drawing.paper import Paper, overlapping
 
 PLACES = st.lists(st.floats(-100.0, 100.0), min_size=1, max_size=12).map(sorted)
@@ -42,6 +42,54 @@ def test_texts_of_a_ladder_never_overlap(wanted, side):
     outside = {"below": lambda b: b[3] < -10.0, "above": lambda b: b[1] > 10.0}
     outside |= {"left": lambda b: b[2] < -10.0, "right": lambda b: b[0] > 10.0}
     assert all(outside[side](label.box()) for label in paper.labels)
+
+
+@given(PLACES, st.sampled_from(["below", "above", "left", "right"]))
+def test_lines_of_a_ladder_run_outwards_to_their_texts_and_end_along_them(wanted, side):
+    paper = Paper()
+    ladder(
+        paper,
+        [Mark(at=at, start=0.0, text=f"{at:.3f}") for at in wanted],
+        side,
+        9.0 if side in ("above", "right") else -9.0,
+    )
+    across_axis = 1 if side in ("above", "below") else 0
+    outwards = 1.0 if side in ("above", "right") else -1.0
+    for stroke, label in zip(paper.strokes, paper.labels, strict=True):
+        out = outwards * stroke.points[:, across_axis]
+        assert np.all(np.diff(out) > 0.0)
+        assert stroke.points[-1, 1 - across_axis] == stroke.points[-2, 1 - across_axis]
+        begin = min(outwards * np.array(label.box())[[across_axis, across_axis + 2]])
+        assert 0.0 < begin - out[-1] < 1.0
+
+
+@pytest.mark.parametrize("side", range(4), ids=["left", "below", "right", "above"])
+@pytest.mark.parametrize(("what", "clear"), [("line", 0.2), ("text", 0.4)])
+def test_a_name_moves_away_from_what_is_nearer_than_allowed(side, what, clear):
+    """Beside its best place stands a line or a text, a little too near or a little farther off than it must."""
+    tag = Tag(text="A1", x=0.0, y=0.0, radius=0.0, height_mm=2.5)
+    alone = Paper()
+    place_tags(alone, [tag], 1.0)
+    box = np.array(alone.labels[0].box())
+    moved = []
+    for gap in (clear - 0.01, clear + 0.01):
+        paper = Paper()
+        at = box[side] + (gap if side >= 2 else -gap)
+        middle = 0.5 * (box[:2] + box[2:])
+        if what == "line":
+            ends = np.array([middle, middle]) + np.array([[-0.3, -0.3], [0.3, 0.3]])
+            ends[:, side % 2] = at
+            paper.line(ends)
+        else:
+            paper.text("I", 0.0, 0.0)
+            other = np.array(paper.labels[0].box())
+            shift = middle - 0.5 * (other[:2] + other[2:])
+            shift[side % 2] = at - other[(side + 2) % 4]
+            paper.labels.clear()
+            paper.text("I", *shift)
+        place_tags(paper, [tag], 1.0)
+        moved.append(paper.labels[-1].box() != pytest.approx(box))
+    assert moved == [True, False]
 
 
 def test_a_diameter_s_text_stands_within_its_arrows_if_it_fits():

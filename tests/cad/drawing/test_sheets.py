@@ -13,7 +13,7 @@ from pareto_monoped.cad.drawing.dimension import FRAME_MM
 from pareto_monoped.cad.drawing.paper import TIMES, Paper, overlapping
 from pareto_monoped.cad.drawing.part_sheet import part_sheet, round_part
 from pareto_monoped.cad.drawing.plan import is_square, plan_of, repeats, rounded_rectangle
-from pareto_monoped.cad.drawing.plan_sheet import plan_tables
+from pareto_monoped.cad.drawing.plan_sheet import plan_tables, section_marks
 from pareto_monoped.cad.drawing.profile import cylinders, faces, half_section, is_round, teeth_of
 from pareto_monoped.cad.drawing.section import diameter_text
 from pareto_monoped.cad.drawing.sheet import MARGIN_MM, SCALES, SIZES, TITLE_MM, Title, titled
@@ -307,6 +307,32 @@ def test_scales_are_written_as_paper_to_part(scale, text):
     paper = Paper()
     titled(paper, SIZES[0], scale, TITLE)
     assert text in [label.text for label in paper.labels]
+
+
+def test_a_section_is_marked_by_an_arrow_and_its_letter_at_each_end(sheets):
+    """ISO 128-3: the arrows point at the ends of the line of cut, outside of the part, with the letter beside them."""
+    part = next(part for part, *_ in sheets if not is_round(part) and not part.balls)
+    plan, paper = plan_of(part), Paper()
+    section_marks(paper, plan, 1.0)
+    _, low, _, high = plan.bounds
+    ends = zip(paper.strokes[::2], paper.strokes[1::2], paper.fills, paper.labels, strict=True)
+    for (cut, shaft, head, letter), inside in zip(ends, (lambda y: y <= high, lambda y: y >= low), strict=True):
+        (x0, y0), (x1, y1) = shaft.points
+        assert not any(inside(y) for y in (*cut.points[:, 1], y0))
+        assert y0 == y1
+        assert min(cut.points[:, 1]) < y0 < max(cut.points[:, 1])
+        assert x0 < x1 == cut.points[0, 0] == cut.points[1, 0]
+        assert head.points[0].tolist() == [x1, y1]
+        assert x0 - 2.0 < letter.box()[2] < x0
+        assert letter.y + 0.5 * letter.height_mm == pytest.approx(y0)
+
+
+def test_sheets_have_the_sizes_of_the_a_series():
+    """ISO 216: the longer side of An is 1000 mm over the fourth root of 2^(2n - 1), less what is below 1 mm."""
+    for size in SIZES:
+        n = int(size.name.removeprefix("A"))
+        sides = sorted(int(1000.0 / 2.0 ** ((2 * k - 1) / 4) + 0.2) for k in (n, n + 1))
+        assert [size.width_mm, size.height_mm] == (sides if size.name == "A4" else sides[::-1])
 
 
 def rows_of(table):

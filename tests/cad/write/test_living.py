@@ -14,6 +14,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
+import shapely
 from scipy.spatial import cKDTree
 
 from pareto_monoped.actuator.motors import motor_names
@@ -60,6 +61,22 @@ def run(living, **changes):
 def names(living):
     """Those of the program as it is."""
     return run(living)
+
+
+def test_the_hull_of_discs_is_that_of_their_centres_grown_by_their_radius(names):
+    """The stand's plates have such outlines, which few robots have."""
+    centres = np.random.default_rng(3).uniform(-40.0, 40.0, (9, 2)).tolist()
+    (pieces,) = names["rounded_hull"]([tuple(centre) for centre in centres], 5.0)
+    corners = []
+    for kind, *numbers in pieces:
+        if kind == "arc":
+            x, y, radius, start, end = numbers
+            turns = np.linspace(start, end, 200)
+            corners += np.column_stack((x + radius * np.cos(turns), y + radius * np.sin(turns))).tolist()
+        else:
+            corners += [numbers[:2], numbers[2:]]
+    wanted = shapely.MultiPoint(centres).convex_hull.buffer(5.0, quad_segs=200)
+    assert shapely.Polygon(corners).symmetric_difference(wanted).area < 1e-3 * wanted.area
 
 
 def steps(names):
