@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+from pareto_monoped.actuator.actuator import build_actuator
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES, RULE_SETS
 from pareto_monoped.geometry.making import Fit
@@ -33,6 +34,20 @@ def test_every_fit_is_of_a_face_that_the_part_has(parts):
     for part in fitted:
         for fit in part.fits:
             assert any(fit.holds(diameter) for diameter in diameters(part)), (part.name, fit.text)
+
+
+@pytest.mark.parametrize("family", ["ISSPG", "ESSPG"])
+def test_fits_of_both_families_are_of_faces_that_the_part_has(family):
+    """The paper's cases have but one of the two at some joints."""
+    found = map_for("VT8020", "iso6336")
+    best = next(
+        one.best for entry in found.entries for name, one in entry.families.items() if name == family and one.best
+    )
+    actuator = build_actuator(found.motor, family, best.gears, found.settings, best.face_width_mm)
+    fitted = [(part, fit) for part in actuator.parts for fit in part.fits]
+    assert len(fitted) > 10
+    for part, fit in fitted:
+        assert any(fit.holds(diameter) for diameter in diameters(part)), (part.name, fit.text)
 
 
 def test_every_made_metal_part_names_its_alloy(parts):
