@@ -8,7 +8,7 @@ import pytest
 from pareto_monoped.actuator.actuator import build_actuator
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES, RULE_SETS
-from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.making import Fit, raceway_note
 from pareto_monoped.geometry.roles import FASTENERS
 from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.materials import ALLOYS
@@ -80,3 +80,8 @@ def test_alloys_are_those_of_their_standards():
 def test_a_fit_prints_its_number_only_for_a_single_part():
     assert Fit(diameter_mm=40.0, zone="h6").text == "40 h6"
     assert Fit(diameter_mm=np.array([40.0, 50.0]), zone="h6").text == ""
+
+
+def test_a_raceway_is_round_within_a_quarter_of_its_tolerance():
+    """SKF asks for a quarter round and half cylindrical: 0.025 and 0.05 of 0.1 mm."""
+    assert "round within 0.025 mm, cylindrical within 0.050 mm" in raceway_note(0.1)

@@ -29,7 +29,7 @@ def test_form_factor_is_the_table_and_between():
 
 
 def test_form_factor_grows_smoothly():
-    """Y is nearly straight over 1 / N (Lewis: y = 0.154 - 0.912 / N): an entry at a wrong number of teeth stands out."""
+    """Y is nearly straight over 1 / N (Lewis: y = 0.154 - 0.912 / N): a misplaced entry stands out."""
     tabled = np.array(
         [12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 24, 26, 28, 30, 34, 38, 43, 50, 60, 75, 100, 150, 300]
     )
