@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 
 import pareto_monoped as pm
@@ -36,6 +37,17 @@ def test_a_film_of_a_jump_is_written_by_its_ending(tmp_path):
         assert drawn.n_frames > 5
     with pytest.raises(InputError, match=r"c\.avi': must be a file ending in"):
         pm.film(C, tmp_path / "c.avi")
+
+
+def test_a_film_is_written_where_it_is_asked_for(tmp_path, monkeypatch):
+    """Of three pictures of no jump."""
+    pictures = [np.full((480, 720, 3), grey, np.uint8) for grey in (0, 100, 200)]
+    monkeypatch.setattr("pareto_monoped.api.outputs.trace", lambda *_, **__: {})
+    monkeypatch.setattr("pareto_monoped.api.outputs.build_robot", lambda *_, **__: None)
+    monkeypatch.setattr("pareto_monoped.cad.film.film", lambda *_, **__: pictures)
+    path = pm.film(C, tmp_path / "c.gif")
+    assert path == tmp_path / "c.gif"
+    assert path.read_bytes()[:6] == b"GIF89a"
 
 
 @pytest.mark.usefixtures("unchecked")

@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from pareto_monoped.cli import cli
+from pareto_monoped.cli import cli, stored
 from pareto_monoped.cli.stored import _reading, _server
 from pareto_monoped.errors import InputError
 
@@ -85,3 +85,15 @@ def test_the_real_dashboard_shows_a_study_changes_nothing_and_ends_with_an_inter
     assert rest == "ended\n"
     assert hashlib.sha256(db.read_bytes()).digest() == hashlib.sha256(STORED.read_bytes()).digest()
     assert [path.name for path in tmp_path.iterdir()] == [db.name]
+
+
+@pytest.mark.parametrize("browse", [False, True])
+def test_the_browser_opens_where_it_listens_only_if_asked(monkeypatch, browse):
+    opened = []
+    monkeypatch.setattr(stored, "require_extra", lambda *names: None)
+    monkeypatch.setattr(stored, "_application", lambda db: None)
+    monkeypatch.setattr(stored.webbrowser, "open", opened.append)
+    monkeypatch.setattr("socketserver.BaseServer.serve_forever", lambda server, poll_interval: None)
+    result = CliRunner().invoke(cli, ["dashboard", str(STORED), *(["--open"] if browse else [])])
+    assert result.exit_code == 0, result.output
+    assert opened == ([re.search(r"http://127\.0\.0\.1:\d+/", result.stderr)[0]] if browse else [])

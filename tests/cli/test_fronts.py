@@ -348,3 +348,11 @@ def test_a_front_of_motor_pairs_with_three_objectives_fits_into_the_window(capsy
         f"note: {', '.join(left)} do not fit into the table; --csv and --json have all columns" if left else ""
     )
     assert len(left) < len(SYMBOLS) / 2
+
+
+@pytest.mark.parametrize(("designs", "said"), [("2", True), ("3", False)])
+def test_limit_says_how_many_of_the_front_it_takes_only_if_not_all(db, capsys, monkeypatch, designs, said):
+    """The front has three designs."""
+    monkeypatch.setattr("pareto_monoped.analysis.limit.limits", lambda *_, **__: [])
+    assert cli(["limit", db, "--designs", designs, "--json"]) == 0
+    assert ("2 of the front's 3 designs" in capsys.readouterr().err) is said

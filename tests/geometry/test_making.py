@@ -5,9 +5,10 @@ import re
 import numpy as np
 import pytest
 
+from pareto_monoped.actuator.actuator import build_actuator
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES, RULE_SETS
-from pareto_monoped.geometry.making import Fit
+from pareto_monoped.geometry.making import Fit, raceway_note
 from pareto_monoped.geometry.roles import FASTENERS
 from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.materials import ALLOYS
@@ -33,6 +34,20 @@ def test_every_fit_is_of_a_face_that_the_part_has(parts):
     for part in fitted:
         for fit in part.fits:
             assert any(fit.holds(diameter) for diameter in diameters(part)), (part.name, fit.text)
+
+
+@pytest.mark.parametrize("family", ["ISSPG", "ESSPG"])
+def test_fits_of_both_families_are_of_faces_that_the_part_has(family):
+    """The paper's cases have but one of the two at some joints."""
+    found = map_for("VT8020", "iso6336")
+    best = next(
+        one.best for entry in found.entries for name, one in entry.families.items() if name == family and one.best
+    )
+    actuator = build_actuator(found.motor, family, best.gears, found.settings, best.face_width_mm)
+    fitted = [(part, fit) for part in actuator.parts for fit in part.fits]
+    assert len(fitted) > 10
+    for part, fit in fitted:
+        assert any(fit.holds(diameter) for diameter in diameters(part)), (part.name, fit.text)
 
 
 def test_every_made_metal_part_names_its_alloy(parts):
@@ -65,3 +80,8 @@ def test_alloys_are_those_of_their_standards():
 def test_a_fit_prints_its_number_only_for_a_single_part():
     assert Fit(diameter_mm=40.0, zone="h6").text == "40 h6"
     assert Fit(diameter_mm=np.array([40.0, 50.0]), zone="h6").text == ""
+
+
+def test_a_raceway_is_round_within_a_quarter_of_its_tolerance():
+    """SKF asks for a quarter round and half cylindrical: 0.025 and 0.05 of 0.1 mm."""
+    assert "round within 0.025 mm, cylindrical within 0.050 mm" in raceway_note(0.1)

@@ -1,3 +1,4 @@
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -25,6 +26,18 @@ def test_form_factor_is_the_table_and_between():
     assert lewis_form_factor(18) == 0.309
     assert lewis_form_factor(23) == pytest.approx((0.331 + 0.337) / 2)
     assert lewis_form_factor(1000) == 0.472
+
+
+def test_form_factor_grows_smoothly():
+    """Y is nearly straight over 1 / N (Lewis: y = 0.154 - 0.912 / N): a misplaced entry stands out."""
+    tabled = np.array(
+        [12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 24, 26, 28, 30, 34, 38, 43, 50, 60, 75, 100, 150, 300]
+    )
+    factors = lewis_form_factor(tabled)
+    for k in range(1, len(tabled) - 1):
+        share = (1 / tabled[k - 1] - 1 / tabled[k]) / (1 / tabled[k - 1] - 1 / tabled[k + 1])
+        straight = factors[k - 1] + share * (factors[k + 1] - factors[k - 1])
+        assert factors[k] == pytest.approx(straight, abs=0.003), tabled[k]
 
 
 def test_barth():

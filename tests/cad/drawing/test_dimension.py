@@ -5,7 +5,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pareto_monoped.cad.drawing.dimension import Mark, Tag, across, fits_between, frame, ladder, place_tags, spread
+from pareto_monoped.cad.drawing.dimension import (
+    Mark,
+    Tag,
+    across,
+    datum,
+    fits_between,
+    frame,
+    ladder,
+    place_tags,
+    spread,
+)
 from pareto_monoped.cad.drawing.paper import Paper, overlapping
 
 PLACES = st.lists(st.floats(-100.0, 100.0), min_size=1, max_size=12).map(sorted)
@@ -112,3 +122,23 @@ def test_a_frame_is_as_wide_as_its_cells():
     assert box[3] - box[1] == pytest.approx(5.0)
     with pytest.raises(ValueError, match="no symbol"):
         frame(paper, ["flat", "0.1"], 0.0, 0.0)
+
+
+def test_letters_stand_in_the_middle_of_their_boxes():
+    """ISO 5459 and ISO 1101: of a datum's box, and of the last cell of a frame, both 5 mm high."""
+    paper = Paper()
+    datum(paper, "B", 20.0, 30.0)
+    wide = frame(paper, ["position", "A"], 50.0, 60.0)
+    for label, (x, y) in zip(paper.labels, [(22.5, 32.5), (50.0 + wide - 2.5, 62.5)], strict=True):
+        left, _, right, high = label.box()
+        assert (0.5 * (left + right), 0.5 * (label.y + high)) == pytest.approx((x, y))
+
+
+def test_a_paper_is_laid_where_it_was_drawn_unless_moved():
+    drawn, plain, moved = Paper(), Paper(), Paper()
+    drawn.circle(3.0, 4.0, 2.0)
+    drawn.text("A", 1.0, 2.0)
+    plain.lay(drawn)
+    moved.lay(drawn, 10.0, -5.0)
+    assert plain.box() == drawn.box()
+    assert moved.box() == pytest.approx(np.add(drawn.box(), (10.0, -5.0) * 2))

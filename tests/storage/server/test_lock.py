@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -31,3 +32,14 @@ def test_killed_in_mid_run_and_resumed(cluster, tmp_path, place, address):
     resume(place)
     run(load_study(tmp_path / "s.toml"), tmp_path / "s.db")
     assert_same_study(tmp_path / "s.db", place)
+
+
+def test_a_lock_that_is_freed_within_moments_is_taken():
+    """A server notices late that a run was killed: the first answers are no."""
+    pytest.importorskip("psycopg", reason="the extra postgres is not installed")
+    from pareto_monoped.storage.server import ServerStorage
+
+    answers = [False, False, True]
+    connection = SimpleNamespace(execute=lambda *_: SimpleNamespace(fetchone=lambda: [answers.pop(0)]))
+    ServerStorage(SimpleNamespace(schema="s"))._take(connection, "run")
+    assert answers == []
