@@ -355,4 +355,4 @@ def test_limit_says_how_many_of_the_front_it_takes_only_if_not_all(db, capsys, m
     """The front has three designs."""
     monkeypatch.setattr("pareto_monoped.analysis.limit.limits", lambda *_, **__: [])
     assert cli(["limit", db, "--designs", designs, "--json"]) == 0
-    assert ("2 of the front's 3 designs" in capsys.readouterr().err) is said
+    assert ("of the front's 3 designs, evenly spread" in capsys.readouterr().err) is said

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -52,6 +53,16 @@ def test_pv_of_the_published_set_at_four_is_that_of_the_notes(vt_map):
     assert found.pv_mpa_m_per_s == pytest.approx(3.9, abs=0.05)
     length = actuator.face_width_mm + 2 * 1.3
     assert found.pressure_mpa == pytest.approx(actuator.continuous_torque_n_m / (5 * 0.015) / (6.0 * length))
+
+
+def test_pressure_on_the_duty_s_bush_is_that_of_its_mean_torque(vt_map):
+    """By angle of the levels, over five pins of 6 mm on 15 mm: the torque that the pressure makes is the mean one."""
+    actuator, duty = vt_map.lookup(4.0), vt_map.settings.parts.duty
+    pressure_mpa = service_sheet(actuator, vt_map.settings).bush_duty.pressure_mpa
+    torque_n_m = pressure_mpa * 6.0 * (actuator.face_width_mm + 2 * 1.3) * 5 * 0.015
+    assert torque_n_m / actuator.peak_torque_n_m == pytest.approx(
+        np.average(duty.torque_shares, weights=duty.output_angles_rad)
+    )
 
 
 def test_sources_multiply_and_none_gains(vt_map):

@@ -17,6 +17,9 @@ from pareto_monoped.cad.drawing.dimension import (
     spread,
 )
 from pareto_monoped.cad.drawing.paper import Paper, overlapping
+from pareto_monoped.cad.drawing.plan import repeats
+from pareto_monoped.cad.shape.outlines import contours
+from pareto_monoped.geometry.shapes import polygon
 
 PLACES = st.lists(st.floats(-100.0, 100.0), min_size=1, max_size=12).map(sorted)
 
@@ -142,3 +145,10 @@ def test_a_paper_is_laid_where_it_was_drawn_unless_moved():
     moved.lay(drawn, 10.0, -5.0)
     assert plain.box() == drawn.box()
     assert moved.box() == pytest.approx(np.add(drawn.box(), (10.0, -5.0) * 2))
+
+
+@pytest.mark.parametrize("points", [3, 5, 12])
+def test_a_star_repeats_itself_as_often_as_it_has_points(points):
+    radii, angles = np.tile([10.0, 4.0], points), np.arange(2 * points) * np.pi / points
+    (star,) = contours(polygon([(r * np.cos(a), r * np.sin(a)) for r, a in zip(radii, angles, strict=True)]))
+    assert repeats(star) == points

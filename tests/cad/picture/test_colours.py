@@ -47,3 +47,10 @@ def test_black_lines_and_white_paper_stand_out():
 
 def test_colours_repeat_after_the_last():
     assert colour(len(PALETTE)) == colour(0) != colour(1)
+
+
+def test_colours_can_be_stored_in_bytes():
+    levels = 255.0 * np.array(PALETTE)
+    assert np.allclose(levels, np.round(levels))
+    assert levels.min() >= 0.0
+    assert levels.max() <= 255.0 + 1e-9

@@ -4,6 +4,7 @@ import csv
 import io
 import re
 
+import manifold3d as m3
 import numpy as np
 import pytest
 import trimesh
@@ -11,6 +12,7 @@ import trimesh
 from pareto_monoped.cad.assembly import Pose, instances
 from pareto_monoped.cad.product import ListedPart, part_file_name
 from pareto_monoped.cad.shape.meshes import flaws
+from pareto_monoped.cad.shape.outlines import contours, polygon
 from pareto_monoped.cad.write import meshes
 from pareto_monoped.cad.write.assembly_pack import COLLAR_MM, foot_mould
 from pareto_monoped.design import Design
@@ -112,6 +114,14 @@ def test_the_mould_is_watertight_and_its_cavity_is_the_foot_without_its_pocket(p
         assert trimesh.load(io.BytesIO(meshes.stl(half)), file_type="stl").is_watertight
     (ball,) = foot.balls
     radius, top = float(ball.radius_mm), float(ball.top_mm)
+    # The block stands in the collar, here in its front half.
+    body = next(prism for prism in block.prisms if prism.holes)
+    (outline,) = contours(body.outline)
+    width = np.ptp(polygon(outline)[:, 0])
+    standing = m3.Manifold.cube((width, COLLAR_MM, float(body.z1_mm))).translate(
+        (-0.5 * width, top, -float(body.z1_mm))
+    )
+    assert (halves[0].body ^ standing).volume() == pytest.approx(0.0, abs=1e-6)
     # A slice well below pins and collar: a square with half a disc cut out.
     for half in halves:
         body = half.body
