@@ -17,8 +17,10 @@ from pareto_monoped.cad.drawing.dimension import (
     spread,
 )
 from pareto_monoped.cad.drawing.paper import Paper, overlapping
-from pareto_monoped.cad.drawing.plan import repeats
-from pareto_monoped.cad.shape.outlines import contours
+from pareto_monoped.cad.drawing.plan import plan_of, repeats
+from pareto_monoped.cad.shape.outlines import contours, ends
+from pareto_monoped.geometry.parts import Ball, machined_part
+from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import polygon
 
 PLACES = st.lists(st.floats(-100.0, 100.0), min_size=1, max_size=12).map(sorted)
@@ -152,3 +154,13 @@ def test_a_star_repeats_itself_as_often_as_it_has_points(points):
     radii, angles = np.tile([10.0, 4.0], points), np.arange(2 * points) * np.pi / points
     (star,) = contours(polygon([(r * np.cos(a), r * np.sin(a)) for r, a in zip(radii, angles, strict=True)]))
     assert repeats(star) == points
+
+
+def test_the_outline_of_a_ball_that_is_cut_flat_is_closed_by_a_level_line():
+    """A chord 12 mm above the centre of a ball of 20 mm is 32 mm long: 12, 16, 20."""
+    ball = Ball(radius_mm=20.0, y_mm=-5.0, top_mm=12.0)
+    plan = plan_of(machined_part(name="foot", role=Role.FOOT, prisms=(), balls=(ball,)))
+    arc, line = plan.layers[0].outline.pieces
+    assert ends(arc)[1] == pytest.approx(ends(line)[0])
+    assert ends(line)[1] == pytest.approx(ends(arc)[0])
+    assert ends(line)[0] - ends(line)[1] == pytest.approx((32.0, 0.0))
