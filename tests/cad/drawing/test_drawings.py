@@ -3,14 +3,16 @@
 import csv
 import dataclasses
 import io
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import shapely
 
 from pareto_monoped.cad.cables import cables
-from pareto_monoped.cad.drawing import drawings
+from pareto_monoped.cad.drawing import assembly_sheets, drawings
 from pareto_monoped.cad.drawing.assembly_sheets import assembly_sheet, cable_sheet, exploded_sheets
+from pareto_monoped.cad.drawing.assembly_views import FROM_FRONT
 from pareto_monoped.cad.drawing.drawings import assembly_drawing, origin_of, part_drawings
 from pareto_monoped.cad.drawing.paper import overlapping
 from pareto_monoped.cad.write.tables import parts_list
@@ -142,6 +144,15 @@ def test_the_sheet_of_the_cables_notes_a_bend_that_is_too_tight(product, sheet_o
     monkeypatch.setattr("pareto_monoped.cad.drawing.assembly_sheets.cables", lambda _: (tight, *made[1:]))
     said = " ".join(label.text for label in cable_sheet(product)[0].labels)
     assert f"{tight.warning[0].upper()}{tight.warning[1:]}." in said
+
+
+def test_the_sheet_of_the_cables_shows_the_base_and_housings_but_no_plates_of_the_leg(product, monkeypatch):
+    monkeypatch.setattr(assembly_sheets, "outline_of", lambda region: region)
+    monkeypatch.setattr(assembly_sheets, "placed", lambda *_: SimpleNamespace(project=shapely.Polygon))
+    items = {seen.item for seen in assembly_sheets._near_cables(product, FROM_FRONT)}
+    names = {i.part.name for i, kind in zip(product.instances, product.kinds, strict=True) if kind in items}
+    assert {"base_near_cheek", "base_far_cheek", "base_rod", "knee_driver"} <= names
+    assert not [name for name in names if name.startswith(("thigh_plate", "shank", "foot"))]
 
 
 def test_the_sheet_of_the_cables_says_how_to_cut_them(product, drawn):
