@@ -227,6 +227,10 @@ def test_face_load_factor_is_that_of_springs_side_by_side(crowning, carries):
     expected = [iso6336.springs(misalignment, 15.0, carries, crowning) for misalignment in ASKEW]
     assert together == pytest.approx(alone, rel=1e-12)
     assert alone == pytest.approx(expected, rel=2e-6)
+    loads = np.array([[carries], [2.0 * carries]])
+    table = load.face_load_factor(np.array(ASKEW), 15.0, loads, crowning)
+    assert table[0] == pytest.approx(alone, rel=1e-12)
+    assert table[1] == pytest.approx(load.face_load_factor(np.array(ASKEW), 15.0, 2.0 * carries, crowning), rel=1e-12)
 
 
 @pytest.mark.parametrize("misalignment", ASKEW)
