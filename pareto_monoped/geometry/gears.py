@@ -119,8 +119,8 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
 def _roots(teeth: Numbers, shift: Numbers, angle: float) -> tuple[Numbers, Numbers, Numbers]:
-    """Area and polar moment, for one of the teeth, inside the lines from a gear's axis to the form circle's points of
-    its teeth, and the radius of that circle, in modules.
+    """Return area and polar moment of one tooth's share of a gear, inside the lines from its axis to the tooth's points
+    on the form circle, and the radius of that circle; all in modules.
     """
     end = _root_end_rad(teeth, shift, angle)
     depth = DEDENDUM - FILLET - shift
@@ -144,16 +144,15 @@ def _roots(teeth: Numbers, shift: Numbers, angle: float) -> tuple[Numbers, Numbe
 
 
 def _roots_of_many(teeth: Numbers, shift: Numbers, angle: float) -> tuple[Numbers, Numbers, Numbers]:
-    """Return the same, worked out once for all gears of as many teeth with the same shift: the others repeat them."""
+    """Return ``_roots`` of many gears, worked out once for those with the same number of teeth and the same shift."""
     if not np.ndim(teeth) and not np.ndim(shift):
         return _roots(_array(teeth), shift, angle)
     pairs = np.empty(np.broadcast_shapes(np.shape(teeth), np.shape(shift)), dtype=np.complex128)
     pairs.real, pairs.imag = teeth, shift
     some, place = np.unique(pairs, return_inverse=True)
-    area, polar, form = (
-        np.asarray(values)[place.reshape(pairs.shape)] for values in _roots(some.real.copy(), some.imag.copy(), angle)
-    )
-    return area, polar, form
+    area, polar, form = map(np.asarray, _roots(some.real.copy(), some.imag.copy(), angle))
+    place = place.reshape(pairs.shape)
+    return area[place], polar[place], form[place]
 
 
 def _ring_fillets_mm2(gear: "InternalGear", root_mm: Numbers) -> Numbers:
@@ -349,7 +348,7 @@ def _internal_mm(gear: InternalGear) -> tuple[Numbers, Numbers]:
 
 
 def _both_mm(gear: ExternalGear | InternalGear) -> tuple[Numbers, Numbers]:
-    """Area and polar moment of a gear, or of the hole of a ring; kept, because several prisms share them."""
+    """Return area and polar moment of a gear, or of the hole of a ring; kept, because several prisms share them."""
     if gear._known is None:
         try:
             known = _remembered_mm(gear)

@@ -160,8 +160,8 @@ def face_load_factor(
 def _reach(mean: Floats, above: Floats, below: Floats, above_cubed: Floats, below_cubed: Floats) -> Floats:
     """Return s of ``face_load_factor`` where only a part of the face is in contact.
 
-    Powers take most of the time: each is worked out once, and no more for what two steps left as it was. Steps come in
-    pairs, so that this is the value after all of them.
+    Powers take most of the time, so each is worked out once. A mesh is done when two steps lead back to the value
+    before them: the number of steps is even, so all of them lead there, too.
     """
     found, left = np.empty(len(mean)), np.arange(len(mean))
     reach, cubed = below, below_cubed

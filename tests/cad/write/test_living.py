@@ -328,9 +328,3 @@ def test_only_the_parts_asked_for_are_made(names, tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "argv", ["model.py", "--parts", "foot,base_rod", "--out", str(tmp_path / "some")])
     names["main"]()
     assert made == [tmp_path / "some" / "foot.step", tmp_path / "some" / "base_rod.step"]
-
-
-def test_a_rounded_hull_turns_at_the_corners_of_its_points(names):
-    corners = {(0.0, 0.0), (9.0, 1.0), (8.0, 7.0), (-1.0, 6.0)}
-    (pieces,) = names["rounded_hull"]([*corners, (3.0, 3.0), (4.0, 2.0), (5.0, 5.0)], 0.5)
-    assert {piece[1:3] for piece in pieces if piece[0] == "arc"} == corners
