@@ -1,7 +1,7 @@
 """The default search and NSGA-II on standard test problems, whose landscapes are not those of a jump.
 
     python benchmarks/search_landscapes.py                              # a short look: two problems, two seeds
-    python benchmarks/search_landscapes.py --full                       # what benchmarks/search_landscapes.md shows
+    python benchmarks/search_landscapes.py --full                       # all problems, five seeds
     python benchmarks/search_landscapes.py --only osy zdt4 --seeds 21 30
 
 Problems and hypervolume are pymoo's. Quality is the hypervolume of all designs evaluated so far as a share of that of
