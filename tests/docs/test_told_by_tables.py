@@ -122,6 +122,9 @@ def legs():
     yield f"miss the take-off speed of series 2 or 3 by {between(misses)} percent"
     yield f"Push times of series 2 and 3 are {off[2, 'push, s']:.0f} and {off[3, 'push, s']:.0f} percent too long"
     damping = firsts(terms.loc[("elastic", "damping")]["value"])
+    (published,) = re.findall(r"0.093 N m and ([\d.]+) N m s/rad", said("docs/legs.md"))
+    assert round(max(damping) / float(published)) == 4
+    yield "is four times the published viscous friction"
     yield (
         f"damping is the same within {math.ceil(100.0 * abs(damping[2] / damping[1] - 1.0))} percent, "
         f"{damping[1:].mean():.2f} N m s/rad. Fitted to the flight time of series 1 it is {damping[0]:.2f}"
