@@ -10,6 +10,7 @@ import shapely
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.drawing.bores import bores, number
 from pareto_monoped.cad.drawing.dimension import FRAME_MM
+from pareto_monoped.cad.drawing.drawings import pdf
 from pareto_monoped.cad.drawing.paper import TIMES, Paper, overlapping
 from pareto_monoped.cad.drawing.part_sheet import part_sheet, round_part
 from pareto_monoped.cad.drawing.plan import is_square, plan_of, repeats, rounded_rectangle
@@ -24,6 +25,8 @@ from pareto_monoped.geometry.gears import InternalGear
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.robot.build import build_robot
 from tests.cad.drawing.crossings import crossed
+from tests.cad.signed import of_pdf
+from tests.cad.test_signatures import compare
 
 ROBOTS = [
     ("A", "VT8020", "iso6336"),
@@ -70,6 +73,22 @@ def test_no_text_stands_on_another_nor_leaves_the_frame(sheets):
             x0, y0, x1, y1 = label.box()
             inside = x0 > 20.0 and y0 > MARGIN_MM and x1 < size.width_mm - MARGIN_MM and y1 < size.height_mm - MARGIN_MM
             assert inside, (part.name, label.text)
+
+
+@pytest.mark.parametrize("sheets", ROBOTS[:1], ids=str, indirect=True)
+def test_every_sheet_has_its_signature(sheets):
+    """Of parts of other gearboxes, with more planets and an external sun, than those of ``test_signatures.py``."""
+    compare(
+        {
+            f"{place} {part.name}.pdf": [
+                *of_pdf(pdf([(paper, size.width_mm, size.height_mm)], "")),
+                size.width_mm,
+                scale,
+            ]
+            for place, (part, paper, size, scale) in enumerate(sheets)
+        },
+        "sheets of case A",
+    )
 
 
 def test_no_line_runs_through_a_text(sheets):
