@@ -14,7 +14,7 @@ from pareto_monoped.cad.drawing.drawings import pdf
 from pareto_monoped.cad.drawing.paper import TIMES, Paper, overlapping
 from pareto_monoped.cad.drawing.part_sheet import part_sheet, round_part
 from pareto_monoped.cad.drawing.plan import is_square, plan_of, repeats, rounded_rectangle
-from pareto_monoped.cad.drawing.plan_sheet import plan_tables, section_marks
+from pareto_monoped.cad.drawing.plan_sheet import _APART_MM, _with_detail, plan_tables, section_marks
 from pareto_monoped.cad.drawing.profile import cylinders, faces, half_section, is_round, teeth_of
 from pareto_monoped.cad.drawing.section import diameter_text
 from pareto_monoped.cad.drawing.sheet import MARGIN_MM, SCALES, SIZES, TITLE_MM, Title, titled
@@ -182,6 +182,20 @@ def test_plates_with_many_holes_have_a_detail_with_their_names(sheets):
 def _scale(caption):
     one, other = caption.removeprefix("Z, ").split(":")
     return float(one) / float(other)
+
+
+@pytest.mark.parametrize(("wide", "tall"), [(60.0, 20.0), (20.0, 60.0)])
+def test_a_detail_stands_below_a_wide_view_and_beside_a_tall_one(wide, tall):
+    view, detail = Paper(), Paper()
+    view.line([(5.0, 7.0), (5.0 + wide, 7.0 + tall)])
+    detail.line([(-3.0, 11.0), (7.0, 21.0)])
+    first, second = (shapely.box(*np.ravel([s.points[0], s.points[1]])) for s in _with_detail(view, detail).strokes)
+    assert first.distance(second) == pytest.approx(_APART_MM)
+    along = 0 if tall > wide else 1  # they stand apart along this axis, and their middles are at one height across it
+    middles = [np.array(box.centroid.coords[0]) for box in (first, second)]
+    assert middles[0][1 - along] == pytest.approx(middles[1][1 - along])
+    low, high = np.array(first.union(second).bounds).reshape(2, 2)[:, 1]
+    assert low + high == pytest.approx(0.0)
 
 
 def test_no_line_crosses_the_title_block_or_the_frame(sheets):
