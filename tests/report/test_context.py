@@ -101,6 +101,15 @@ def test_a_name_stands_below_its_point_where_nothing_else_is_free():
     assert _label_place(200.0, 200.0, 60.0, [beside, above, (100.0, 300.0, 216.5, 230.0)])[1] == "start"
 
 
+def test_lines_of_the_grid_lie_within_the_frame(payload):
+    root = ElementTree.fromstring(re.search(r"<svg.*?</svg>", _chart(own_jumpers(payload))).group())
+    (frame,) = (node for node in root.iter("rect") if node.get("class") == "frame")
+    x, y, wide, tall = (float(frame.get(name)) for name in ("x", "y", "width", "height"))
+    lines = [node for node in root.iter("line") if node.get("class") == "gridline"]
+    assert all(x <= float(line.get(name)) <= x + wide for line in lines for name in ("x1", "x2"))
+    assert all(y <= float(line.get(name)) <= y + tall for line in lines for name in ("y1", "y2"))
+
+
 def test_names_are_escaped(payload):
     (card,) = payload.studies
     assert "<b>x" not in context_section(replace(payload, studies=[replace(card, case_motor="<b>x")]))
