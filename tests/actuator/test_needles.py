@@ -88,9 +88,13 @@ def test_bushes_are_an_option(vt8020):
 
 
 def test_two_rows_stand_at_the_ends_of_the_bore_with_the_spacer_between_them():
-    """By hand: rows of 8 mm in a planet from z = 1 to 21 mm leave 4 mm between them."""
+    """By hand: rows of 8 mm in a planet from z = 1 to 21 mm leave 4 mm between, in arrays two halves."""
     at = SimpleNamespace(face_width_mm=20.0, z_gear_back=1.0, z_gear_front=21.0)
     needles, spacers, spacer = _stacked(at, SimpleNamespace(rows=2, total_mm=16.0))
-    assert [z for _, _, z in needles] == [1.0, 13.0]
-    assert [z for _, _, z in spacers] == [9.0]
-    assert spacer == 4.0
+    assert ([z for _, _, z in needles], [z for _, _, z in spacers], spacer) == ([1.0, 13.0], [9.0], 4.0)
+    needles, spacers, half = _stacked(at, SimpleNamespace(rows=np.array([2]), total_mm=np.array([16.0])))
+    assert ([*np.ravel([z for _, _, z in needles])], [*np.ravel([z for _, _, z in spacers])], half) == (
+        [1.0, 13.0],
+        [9.0, 11.0],
+        2.0,
+    )
