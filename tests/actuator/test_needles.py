@@ -1,6 +1,7 @@
 """Needle rollers: number, choice of rows, ratings against the standards' tables."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from pareto_monoped.actuator.needles import (
     roller_bearing,
     static_rating_n,
 )
+from pareto_monoped.actuator.planet_bearings import _stacked
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.errors import InputError
 
@@ -83,3 +85,16 @@ def test_bushes_are_an_option(vt8020):
     parts = found.lookup(6.0).parts
     assert any(part.role is Role.BUSH for part in parts)
     assert not any(part.name == "planet_needles" for part in parts)
+
+
+def test_two_rows_stand_at_the_ends_of_the_bore_with_the_spacer_between_them():
+    """By hand: rows of 8 mm in a planet from z = 1 to 21 mm leave 4 mm between, in arrays two halves."""
+    at = SimpleNamespace(face_width_mm=20.0, z_gear_back=1.0, z_gear_front=21.0)
+    needles, spacers, spacer = _stacked(at, SimpleNamespace(rows=2, total_mm=16.0))
+    assert ([z for _, _, z in needles], [z for _, _, z in spacers], spacer) == ([1.0, 13.0], [9.0], 4.0)
+    needles, spacers, half = _stacked(at, SimpleNamespace(rows=np.array([2]), total_mm=np.array([16.0])))
+    assert ([*np.ravel([z for _, _, z in needles])], [*np.ravel([z for _, _, z in spacers])], half) == (
+        [1.0, 13.0],
+        [9.0, 11.0],
+        2.0,
+    )

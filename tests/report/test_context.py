@@ -13,6 +13,7 @@ from pareto_monoped.report.context import (
     _WIDTH,
     Jumper,
     _chart,
+    _label_place,
     context_section,
     own_jumpers,
     published_jumpers,
@@ -90,6 +91,23 @@ def test_names_of_points_cover_neither_points_nor_each_other(payload):
     for i, (left, right, top, bottom) in enumerate(boxes):
         assert not any(left < x < right and top < y < bottom for x, y in points)
         assert not any(left < b[1] and right > b[0] and top < b[3] and bottom > b[2] for b in boxes[:i])
+
+
+def test_a_name_stands_below_its_point_where_nothing_else_is_free():
+    """What begins right under its base line, 17 pixels below the point, is not in its way."""
+    beside, above = (100.0, 300.0, 195.0, 203.0), (100.0, 300.0, 182.0, 190.0)
+    box, anchor, dx, dy = _label_place(200.0, 200.0, 60.0, [beside, above, (100.0, 300.0, 217.5, 230.0)])
+    assert (box, anchor, dx, dy) == ((170.0, 230.0, 207.0, 217.0), "middle", 0.0, 17.0)
+    assert _label_place(200.0, 200.0, 60.0, [beside, above, (100.0, 300.0, 216.5, 230.0)])[1] == "start"
+
+
+def test_lines_of_the_grid_lie_within_the_frame(payload):
+    root = ElementTree.fromstring(re.search(r"<svg.*?</svg>", _chart(own_jumpers(payload))).group())
+    (frame,) = (node for node in root.iter("rect") if node.get("class") == "frame")
+    x, y, wide, tall = (float(frame.get(name)) for name in ("x", "y", "width", "height"))
+    lines = [node for node in root.iter("line") if node.get("class") == "gridline"]
+    assert all(x <= float(line.get(name)) <= x + wide for line in lines for name in ("x1", "x2"))
+    assert all(y <= float(line.get(name)) <= y + tall for line in lines for name in ("y1", "y2"))
 
 
 def test_names_are_escaped(payload):

@@ -10,7 +10,7 @@ from scipy.optimize import fsolve
 from scipy.special import ellipe, ellipk
 
 from pareto_monoped.actuator.bearings import rated_bearing, rated_bearings
-from pareto_monoped.actuator.service.loads import contact_stiffness, row_load
+from pareto_monoped.actuator.service.loads import _POISSON_RATIO, _YOUNGS_MODULUS_MPA, contact_stiffness, row_load
 from pareto_monoped.errors import SimulationError
 
 B6808 = rated_bearing(40.0)
@@ -109,6 +109,10 @@ def exact_stiffness(bearing):
         # Approach over force to the power 2/3 (Harris, eq. 6.42 with both bodies of steel).
         softness += approach * (3 / (2 * total) * 2 * (1 - 0.3**2) / 207e3) ** (2 / 3) * total / 2
     return softness**-1.5
+
+
+def test_rings_and_balls_are_of_the_steel_of_iso_76():
+    assert (_YOUNGS_MODULUS_MPA, _POISSON_RATIO) == (2.07e5, 0.3)
 
 
 @pytest.mark.parametrize("bearing", rated_bearings(), ids=lambda bearing: bearing.designation)

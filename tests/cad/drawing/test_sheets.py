@@ -10,10 +10,11 @@ import shapely
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.drawing.bores import bores, number
 from pareto_monoped.cad.drawing.dimension import FRAME_MM
+from pareto_monoped.cad.drawing.drawings import pdf
 from pareto_monoped.cad.drawing.paper import TIMES, Paper, overlapping
 from pareto_monoped.cad.drawing.part_sheet import part_sheet, round_part
 from pareto_monoped.cad.drawing.plan import is_square, plan_of, repeats, rounded_rectangle
-from pareto_monoped.cad.drawing.plan_sheet import plan_tables, section_marks
+from pareto_monoped.cad.drawing.plan_sheet import _APART_MM, _with_detail, plan_tables, section_marks
 from pareto_monoped.cad.drawing.profile import cylinders, faces, half_section, is_round, teeth_of
 from pareto_monoped.cad.drawing.section import diameter_text
 from pareto_monoped.cad.drawing.sheet import MARGIN_MM, SCALES, SIZES, TITLE_MM, Title, titled
@@ -24,6 +25,8 @@ from pareto_monoped.geometry.gears import InternalGear
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.robot.build import build_robot
 from tests.cad.drawing.crossings import crossed
+from tests.cad.signed import of_pdf
+from tests.cad.test_signatures import compare
 
 ROBOTS = [
     ("A", "VT8020", "iso6336"),
@@ -70,6 +73,22 @@ def test_no_text_stands_on_another_nor_leaves_the_frame(sheets):
             x0, y0, x1, y1 = label.box()
             inside = x0 > 20.0 and y0 > MARGIN_MM and x1 < size.width_mm - MARGIN_MM and y1 < size.height_mm - MARGIN_MM
             assert inside, (part.name, label.text)
+
+
+@pytest.mark.parametrize("sheets", ROBOTS[:1], ids=str, indirect=True)
+def test_every_sheet_has_its_signature(sheets):
+    """Of parts of other gearboxes, with more planets and an external sun, than those of ``test_signatures.py``."""
+    compare(
+        {
+            f"{place} {part.name}.pdf": [
+                *of_pdf(pdf([(paper, size.width_mm, size.height_mm)], "")),
+                size.width_mm,
+                scale,
+            ]
+            for place, (part, paper, size, scale) in enumerate(sheets)
+        },
+        "sheets of case A",
+    )
 
 
 def test_no_line_runs_through_a_text(sheets):
@@ -163,6 +182,20 @@ def test_plates_with_many_holes_have_a_detail_with_their_names(sheets):
 def _scale(caption):
     one, other = caption.removeprefix("Z, ").split(":")
     return float(one) / float(other)
+
+
+@pytest.mark.parametrize(("wide", "tall"), [(60.0, 20.0), (20.0, 60.0)])
+def test_a_detail_stands_below_a_wide_view_and_beside_a_tall_one(wide, tall):
+    view, detail = Paper(), Paper()
+    view.line([(5.0, 7.0), (5.0 + wide, 7.0 + tall)])
+    detail.line([(-3.0, 11.0), (7.0, 21.0)])
+    first, second = (shapely.box(*np.ravel([s.points[0], s.points[1]])) for s in _with_detail(view, detail).strokes)
+    assert first.distance(second) == pytest.approx(_APART_MM)
+    along = 0 if tall > wide else 1  # they stand apart along this axis, and their middles are at one height across it
+    middles = [np.array(box.centroid.coords[0]) for box in (first, second)]
+    assert middles[0][1 - along] == pytest.approx(middles[1][1 - along])
+    low, high = np.array(first.union(second).bounds).reshape(2, 2)[:, 1]
+    assert low + high == pytest.approx(0.0)
 
 
 def test_no_line_crosses_the_title_block_or_the_frame(sheets):

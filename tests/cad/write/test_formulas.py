@@ -65,6 +65,7 @@ def test_equal_operations_are_one_number_and_constants_are_drawn_together():
     assert text(a - (b - 1.0)) == "a - (b - 1)"
     assert text(-(0.5 * a) * b) == "-a * b / 2"
     assert text(np.radians(30.0) * a) == "pi / 6 * a"
+    assert text((2.0 * driver("x", 3.0)) * (2.0 * driver("y", 5.0))) == "4 * x * y"
 
 
 def test_a_branch_is_noted_with_what_it_depended_on():
