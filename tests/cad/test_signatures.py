@@ -1,8 +1,8 @@
-"""Every file of an export is as it was when somebody looked at it.
+"""Every file of an export, and every sheet of a second robot, is as it was at commit be02a7d.
 
-``signatures.json`` is of commit be02a7d, whose sheets, pictures, tables and models were checked by the other tests and
-by eye. After a change that is wanted, look at the files and make it again:
-``PARETO_MONOPED_SIGN=1 python -m pytest tests/cad/test_signatures.py``.
+That is when ``signatures.json`` was made, after all other tests had passed. It says that something changed, not that
+it was right. After a change that is wanted, look at the files that the test names, and make it again:
+``PARETO_MONOPED_SIGN=1 python -m pytest tests/cad/test_signatures.py tests/cad/drawing/test_sheets.py``.
 """
 
 import json
