@@ -112,6 +112,14 @@ def test_switching_a_constraint_off_changes_the_map(capsys):
     assert json.loads(output.out)[-1]["ratio_low"] > 8.7
 
 
+def test_the_help_ends_with_a_paragraph_of_constraints(capsys):
+    code, output = run(capsys, "--help")
+    *_, before, names = output.out.strip().split("\n\n")
+    assert code == 0
+    assert names.split()[:3] == ["Constraints", "of", "--without:"]
+    assert before.split()[0] == "Options:"
+
+
 def test_another_motor(capsys):
     _, output = run(capsys, "--motor", "mad_m6c12", "--json")
     assert {row["type"] for row in json.loads(output.out)} == {"ESSPG"}
