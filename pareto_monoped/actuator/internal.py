@@ -57,6 +57,9 @@ _PAD_RIM_MM = 0.5
 """Metal inside and outside the threads in the backplate's pad; our own choice."""
 _LEAST_GAP_MM = 2.0
 """Between pad and seat, which are one where it would be narrower: an end mill's diameter; our own choice."""
+_BEHIND_RING_MM = 0.4
+"""By which the bore that the ring gear passes on its way into its seat is wider than the seat: the seat's chamfer and
+0.1 mm; our own choice."""
 _BELL_PLAY_MM = 0.5
 """From the spline of the sun's shaft, which is put through the bell, to the bell's bore; our own choice."""
 
@@ -165,6 +168,7 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
     front_vents = vents(shell.r_flange, at.r_casing, casing.vent_wall_mm)
     z_plate, z_flange, z_lip = shell.z_plate, shell.z_flange, shell.z_lip
     z_back = np.minimum(shell.z_stator_back, at.z_gear_back)
+    r_behind = np.maximum(at.r_stator_in - casing.ring_wall_mm, at.r_ring + _BEHIND_RING_MM)
     return (
         housing_part(
             name="casing",
@@ -198,12 +202,7 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
                 *tube(z_lip, at.z_bearing_back, shell.r_seat_out, shell.r_lip),
                 *tube(at.z_gear_front, z_lip, at.r_stator_in, shell.r_ring_lip),
                 *tube(at.z_gear_back, at.z_gear_front, at.r_stator_in, at.r_ring),
-                *tube(
-                    z_back,
-                    at.z_gear_back,
-                    at.r_stator_in,
-                    at.r_stator_in - casing.ring_wall_mm,
-                ),
+                *tube(z_back, at.z_gear_back, at.r_stator_in, r_behind),
             ),
             fits=(
                 Fit(diameter_mm=2.0 * at.r_seat, zone="H7", seat=True),

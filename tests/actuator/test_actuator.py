@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from pareto_monoped.actuator.actuator import build_actuator, reflected_inertia_kg_m2
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.cad.shape.meshes import flaws, mesh_of
 from pareto_monoped.geometry.roles import Group, Role
 
 
@@ -94,3 +96,23 @@ def test_the_notes_of_the_gears_give_their_own_teeth_and_module(vt_map, ratio):
 def test_building_twice_gives_the_same_record(vt8020, vt_map, settings):
     actuator = vt_map.lookup(6.0)
     assert build_actuator(vt8020, "ISSPG", actuator.gears, settings) == actuator
+
+
+@pytest.mark.parametrize("motor", ["VT8020", "U12"])
+def test_the_ring_gear_passes_the_bore_behind_its_seat(motor):
+    """Ring gears of three of the U12's winners did not, or met the bore at the end of the seat's chamfer."""
+    found = (entry.actuator for entry in map_for(motor).entries)
+    inside = [one for one in found if one is not None and one.family == "ISSPG"]
+    assert len(inside) > 10
+    for one in inside:
+        housing, ring = (next(part for part in one.parts if part.name == name) for name in ("ring_housing", "ring"))
+        radius_mm = max(float(prism.outline.radius_mm) for prism in ring.prisms)
+        back_mm = min(float(prism.z0_mm) for prism in ring.prisms)
+        behind = [prism for prism in housing.prisms if float(prism.z1_mm) <= back_mm + 1e-6]
+        assert behind
+        for prism in behind:
+            assert min(float(hole.radius_mm) for hole in prism.holes) > radius_mm + 0.3, one  # its chamfer
+    lowest = min(inside, key=lambda one: one.ratio)
+    housing = next(part for part in lowest.parts if part.name == "ring_housing")
+    mesh = mesh_of(housing)
+    assert flaws(mesh.points_mm[mesh.triangles]) == ""
