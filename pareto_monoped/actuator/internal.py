@@ -58,8 +58,8 @@ _PAD_RIM_MM = 0.5
 _LEAST_GAP_MM = 2.0
 """Between pad and seat, which are one where it would be narrower: an end mill's diameter; our own choice."""
 _BEHIND_RING_MM = 0.4
-"""By which the bore that the ring gear passes on its way into its seat is wider than the seat: the seat's chamfer and
-0.1 mm; our own choice."""
+"""How much wider than its seat the bore is through which the ring gear enters: more than the seat's chamfer of 0.3 mm;
+our own choice."""
 _BELL_PLAY_MM = 0.5
 """From the spline of the sun's shaft, which is put through the bell, to the bell's bore; our own choice."""
 
