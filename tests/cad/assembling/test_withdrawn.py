@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import manifold3d as m3
 import numpy as np
 import pytest
 
@@ -11,7 +12,45 @@ from pareto_monoped.cad.as_built import as_built
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.geometry.shapes import Circle
 from pareto_monoped.robot.build import build_robot
-from tests.cad.assembling.withdrawn import of_actuator, of_robot
+from tests.cad.assembling.withdrawn import Assembly, Placed, of_actuator, of_robot
+
+
+def toy(*placed):
+    """Return the names of what is left of toys, which stand as they are drawn: (name, kind, body)."""
+    upright = {"turn": np.eye(2), "centre_mm": np.zeros(2), "height_mm": 0.0}
+    return list(
+        Assembly([Placed(name=name, kind=kind, body=body, **upright) for name, kind, body in placed]).left_over()
+    )
+
+
+def tube(low, high, outer, inner=0.0):
+    body = m3.Manifold.cylinder(high - low, outer, circular_segments=128)
+    hole = m3.Manifold.cylinder(high - low, inner, circular_segments=128) if inner else m3.Manifold()
+    return (body - hole).translate((0.0, 0.0, low))
+
+
+@pytest.mark.parametrize(("lip_mm", "stays"), [(10.0, False), (9.9, True)])
+def test_a_disc_leaves_a_cup_whose_lip_it_passes(lip_mm, stays):
+    cup = tube(0.0, 2.0, 14.0) + tube(2.0, 8.0, 14.0, 10.0) + tube(8.0, 9.0, 14.0, lip_mm)
+    assert toy(("cup", "", cup), ("disc", "", tube(2.0, 6.0, 10.0))) == ([["cup", "disc"]] if stays else [])
+
+
+@pytest.mark.parametrize(("flange_mm", "stays"), [(20.0, False), (23.0, True)])
+def test_a_retaining_ring_leaves_its_groove_but_passes_no_flange(flange_mm, stays):
+    shaft = tube(0.0, 5.0, 26.0) + tube(5.0, 7.0, 19.0) + tube(7.0, 12.0, 20.0) + tube(12.0, 14.0, flange_mm)
+    ring = ("ring", "ring", tube(5.0, 7.0, 25.0, 19.0))
+    assert toy(("shaft", "", shaft), ring) == ([["shaft", "ring"]] if stays else [])
+    assert toy(("shaft", "", shaft), (*ring[:1], "", ring[2])) == [["shaft", "ring"]]
+
+
+@pytest.mark.parametrize(("room_mm", "stays"), [(12.0, False), (6.0, True)])
+def test_a_screw_between_two_flanges_needs_its_length_to_leave(room_mm, stays):
+    """A spool is screwed onto a plate, from between its flanges."""
+    shank = tube(-6.0, 3.0, 1.5).translate((14.0, 0.0, 0.0))
+    spool = tube(0.0, 3.0, 20.0) + tube(3.0, 3.0 + room_mm, 8.0) + tube(3.0 + room_mm, 6.0 + room_mm, 20.0)
+    screw = shank + tube(3.0, 5.0, 2.75).translate((14.0, 0.0, 0.0))
+    found = toy(("spool", "", spool - shank), ("plate", "", tube(-10.0, 0.0, 20.0) - shank), ("screw", "screw", screw))
+    assert found == ([["spool", "plate", "screw"]] if stays else [])
 
 
 def gearboxes(motor, family=None):
@@ -20,13 +59,12 @@ def gearboxes(motor, family=None):
     return list({(one.family, one.gears): one for one in found if family in (None, one.family)}.values())
 
 
-def parts_left(actuator):
-    assembly = of_actuator(actuator)
+def checked(assembly):
+    """Return the same, once every screw has been found in a thread: else it would hold nothing."""
     screws = [k for k, one in enumerate(assembly.placed) if one.kind == "screw"]
-    # A screw whose thread is not found would hold nothing.
     assert screws
     assert np.all(assembly.tied[screws].sum(axis=1) == 1)
-    return list(assembly.left_over())
+    return assembly
 
 
 def with_narrow_bore(actuator, radius_mm):
@@ -44,16 +82,19 @@ def with_narrow_bore(actuator, radius_mm):
 def test_a_ring_gear_that_does_not_pass_the_bore_behind_its_seat_is_found():
     """As drawn once: 0.1 mm of radius was missing in the U12's gearbox of 4.2."""
     (actuator,) = (one for one in gearboxes("U12", "ISSPG") if abs(one.ratio - 4.2) < 1e-6)
-    assert parts_left(actuator) == []
-    (left,) = parts_left(with_narrow_bore(actuator, 33.0))
+    assert list(checked(of_actuator(actuator)).left_over()) == []
+    (left,) = of_actuator(with_narrow_bore(actuator, 33.0)).left_over()
     assert {"actuator/ring_1", "actuator/ring_housing_1"} <= set(left)
 
 
 def test_an_external_gearbox_comes_apart_because_its_rings_spring_and_its_screws_have_room():
-    assembly = of_actuator(gearboxes("U12", "ESSPG")[-1])
+    assembly = checked(of_actuator(gearboxes("U12", "ESSPG")[-1]))
     assert list(assembly.left_over()) == []
     # Screws between the flanges of the ring housing leave sideways.
     assert {name.rpartition("_")[0] for name in assembly.sideways} == {"actuator/casing_screw"}
+    # Its retaining rings are spread on a shaft, and pressed together in a bore.
+    assert assembly.spread_by["actuator/retaining_ring_1"] > 0.0
+    assert assembly.spread_by["actuator/bore_retaining_ring_1"] < 0.0
     assembly.placed = [replace(one, kind="" if one.kind == "ring" else one.kind) for one in assembly.placed]
     (left,) = assembly.left_over()
     assert {"actuator/retaining_ring_1", "actuator/bore_retaining_ring_1"} <= set(left)
@@ -65,11 +106,12 @@ def test_every_gearbox_comes_apart(motor):
     found = gearboxes(motor)
     assert len(found) > 40
     for actuator in found:
-        assert parts_left(actuator) == [], actuator
+        assert list(checked(of_actuator(actuator)).left_over()) == [], actuator
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("case", ["A", "B", "C"])
 def test_a_robot_comes_apart(case):
     actuator_map = map_for("VT8020")
-    assert list(of_robot(build_robot(as_built(PAPER_CASES[case].design, actuator_map), actuator_map)).left_over()) == []
+    robot = build_robot(as_built(PAPER_CASES[case].design, actuator_map), actuator_map)
+    assert list(checked(of_robot(robot)).left_over()) == []

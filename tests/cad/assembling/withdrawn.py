@@ -7,8 +7,8 @@ above its own lowest point. This says for all pairs who stands in whose way; goi
 A screw is taken out by itself, towards its head, before the part with its thread moves. All other parts leave one after
 the other, or as a group whose members stand in each other's way, and which then has to come apart by itself. Only a
 screw that is out of its holes, and a bumper, whose seat is open to one side, may also go sideways. What does not come
-apart cannot be put together either. Assumed to be free: a retaining ring is spread so that it passes what has its
-groove, and a bolt loses its nut.
+apart cannot be put together either. A retaining ring is spread or pressed together by some percent, and then goes
+straight. A bolt is assumed to lose its nut, and so to leave what it holds.
 """
 
 from collections.abc import Iterator, Sequence
@@ -42,6 +42,9 @@ FAR_MM = 1000.0
 LEAST_MM3 = 0.5
 """Two solids that share less are facets of a round fit."""
 POSE = Pose(hip_rad=0.0, knee_rad=0.5 * np.pi)
+SPREAD = (0.02, -0.02, 0.04, -0.04, 0.06, -0.06, 0.08, -0.08)
+"""Shares by which the diameters of retaining rings are made greater or smaller. Between a groove and its shaft or bore
+are 2 to 7 percent (DIN 471 and DIN 472, from 25 mm); more is refused."""
 SIDEWAYS = ("screw", "bumper")
 _OFFSET_MM = np.array([0.0137, 0.0271])  # no edge at a round number of millimetres meets a row of rays
 
@@ -134,18 +137,19 @@ def filled(polygons, shape):
     return np.cumsum(passed.reshape(shape), axis=1, dtype=np.uint8) % 2 == 1
 
 
-def standing_in_the_way(placed: Sequence[Placed], cuts: Sequence[Sequence[Cut]]) -> np.ndarray:
-    """Return true at (i, j) where i, moved up, runs into j."""
-    drawn = [Heights(one, some) for one, some in zip(placed, cuts, strict=True)]
-    found = np.zeros((len(placed), len(placed)), dtype=bool)
-    for i, mine in enumerate(drawn):
-        for j, other in enumerate(drawn):
-            start, stop = np.maximum(mine.start, other.start), np.minimum(mine.stop, other.stop)
-            if i != j and other.top > mine.bottom + ALONG_MM and np.all(stop > start):
-                here, there = mine.window(start, stop), other.window(start, stop)
-                met = other.high[there] > mine.low[here] + np.float32(ALONG_MM)
-                found[i, j] = np.count_nonzero(met) >= LEAST_PIXELS
-    return found
+def runs_into(moving: Heights, other: Heights) -> bool:
+    """Return whether a solid, moved up, runs into another."""
+    start, stop = np.maximum(moving.start, other.start), np.minimum(moving.stop, other.stop)
+    if other.top <= moving.bottom + ALONG_MM or np.any(stop <= start):
+        return False
+    met = other.high[other.window(start, stop)] > moving.low[moving.window(start, stop)] + np.float32(ALONG_MM)
+    return bool(np.count_nonzero(met) >= LEAST_PIXELS)
+
+
+def spread(cuts: Sequence[Cut], share: float) -> list[Cut]:
+    """Return a ring whose diameters are greater by a share."""
+    size = (1.0 + share, 1.0 + share)
+    return [Cut(section=cut.section.scale(size), low_mm=cut.low_mm, high_mm=cut.high_mm) for cut in cuts]
 
 
 class Assembly:
@@ -156,7 +160,15 @@ class Assembly:
         known = {key: cuts_of(body) for key, body in {id(one.body): one.body for one in placed}.items()}
         cuts = [known[id(one.body)] for one in placed]
         #: True at (i, j) where i, moved up, runs into j; moved down, j runs into i
-        self.up = standing_in_the_way(placed, cuts)
+        drawn = [Heights(one, some) for one, some in zip(placed, cuts, strict=True)]
+        self.up = np.array([[i != j and runs_into(a, b) for j, b in enumerate(drawn)] for i, a in enumerate(drawn)])
+        #: Of each retaining ring by share: what it runs into, spread or pressed together by it, moved up and down
+        self.spread: dict[int, dict[float, tuple[np.ndarray, np.ndarray]]] = {}
+        for i, (one, some) in enumerate(zip(placed, cuts, strict=True)):
+            for share in SPREAD if one.kind == "ring" else ():
+                ring = Heights(one, spread(some, share))
+                found = [(i != j and runs_into(ring, b), i != j and runs_into(b, ring)) for j, b in enumerate(drawn)]
+                self.spread.setdefault(i, {})[share] = tuple(np.array(found).T)
         self.solids = [one.solid for one in placed]
         self.boxes = np.array([solid.bounding_box() for solid in self.solids])
         #: True where two are one, such as a motor's rotor in its own bearings
@@ -169,6 +181,7 @@ class Assembly:
             if one.kind == "screw":
                 held = self._threaded(i, some[0] if self.heads[i] * one.sign > 0.0 else some[-1])
                 self.tied[i, held] = self.tied[held, i] = True
+        self.spread_by: dict[str, float] = {}  #: share by which a retaining ring was spread
         self.sideways: set[str] = set()  #: what has left so
         self.groups = 0  #: of several parts that left together
 
@@ -204,9 +217,14 @@ class Assembly:
         above, below = self.up[i, others], self.up[others, i]
         if self.placed[i].kind in SIDEWAYS:
             return not (above if self.heads[i] > 0.0 else below).any()
-        held = above & below
-        blocked = (above & ~held).any(), (below & ~held).any()
-        return not (any(blocked) if self.placed[i].kind == "bolt" else all(blocked))
+        if self.placed[i].kind == "bolt":
+            # What stands in its way on both sides is what it holds, and leaves it with its nut.
+            return not (above ^ below).any()
+        ways = ((share, way[others].any()) for share, both in self.spread[i].items() for way in both)
+        share = next((share for share, blocked in ways if not blocked), None)
+        if share is not None:
+            self.spread_by[self.placed[i].name] = share
+        return share is not None
 
     def _leaves_sideways(self, i: int, members: Sequence[int]) -> bool:
         """Return whether a bumper, or a screw out of its holes, leaves across the axis in one of twelve directions.
