@@ -93,8 +93,8 @@ def test_an_external_gearbox_comes_apart_because_its_rings_spring_and_its_screws
     # Screws between the flanges of the ring housing leave sideways.
     assert {name.rpartition("_")[0] for name in assembly.sideways} == {"actuator/casing_screw"}
     # Its retaining rings are spread on a shaft, and pressed together in a bore.
-    assert assembly.spread_by["actuator/retaining_ring_1"] > 0.0
-    assert assembly.spread_by["actuator/bore_retaining_ring_1"] < 0.0
+    assert assembly.spread_by_mm["actuator/retaining_ring_1"] > 0.0
+    assert assembly.spread_by_mm["actuator/bore_retaining_ring_1"] < 0.0
     assembly.placed = [replace(one, kind="" if one.kind == "ring" else one.kind) for one in assembly.placed]
     (left,) = assembly.left_over()
     assert {"actuator/retaining_ring_1", "actuator/bore_retaining_ring_1"} <= set(left)

@@ -7,7 +7,7 @@ above its own lowest point. This says for all pairs who stands in whose way; goi
 A screw is taken out by itself, towards its head, before the part with its thread moves. All other parts leave one after
 the other, or as a group whose members stand in each other's way, and which then has to come apart by itself. Only a
 screw that is out of its holes, and a bumper, whose seat is open to one side, may also go sideways. What does not come
-apart cannot be put together either. A retaining ring is spread or pressed together by some percent, and then goes
+apart cannot be put together either. A retaining ring is spread or pressed together by a little, and then goes
 straight. A bolt is assumed to lose its nut, and so to leave what it holds.
 """
 
@@ -42,9 +42,10 @@ FAR_MM = 1000.0
 LEAST_MM3 = 0.5
 """Two solids that share less are facets of a round fit."""
 POSE = Pose(hip_rad=0.0, knee_rad=0.5 * np.pi)
-SPREAD = (0.02, -0.02, 0.04, -0.04, 0.06, -0.06, 0.08, -0.08)
-"""Shares by which the diameters of retaining rings are made greater or smaller. Between a groove and its shaft or bore
-are 2 to 7 percent (DIN 471 and DIN 472, from 25 mm); more is refused."""
+SPREAD_MM = tuple(0.25 * sign * k for k in range(1, 13) for sign in (1, -1))
+SPREAD_SHARE = 0.08
+"""By what the radii of retaining rings are made greater or smaller, and the greatest share of their outer radius. From
+a groove to its shaft or bore they have to give 2 to 7 percent (DIN 471 and DIN 472, from 25 mm); more is refused."""
 SIDEWAYS = ("screw", "bumper")
 _OFFSET_MM = np.array([0.0137, 0.0271])  # no edge at a round number of millimetres meets a row of rays
 
@@ -146,10 +147,15 @@ def runs_into(moving: Heights, other: Heights) -> bool:
     return bool(np.count_nonzero(met) >= LEAST_PIXELS)
 
 
-def spread(cuts: Sequence[Cut], share: float) -> list[Cut]:
-    """Return a ring whose diameters are greater by a share."""
-    size = (1.0 + share, 1.0 + share)
-    return [Cut(section=cut.section.scale(size), low_mm=cut.low_mm, high_mm=cut.high_mm) for cut in cuts]
+def spread(cuts: Sequence[Cut], by_mm: float) -> list[Cut]:
+    """Return a ring whose radii are greater: bent, it keeps its width."""
+
+    def moved(section):
+        polygons = [np.asarray(polygon) for polygon in section.to_polygons()]
+        bent = [polygon * (1.0 + by_mm / np.hypot(*polygon.T))[:, None] for polygon in polygons]
+        return m3.CrossSection(bent, m3.FillRule.EvenOdd)
+
+    return [Cut(section=moved(cut.section), low_mm=cut.low_mm, high_mm=cut.high_mm) for cut in cuts]
 
 
 class Assembly:
@@ -160,17 +166,19 @@ class Assembly:
         known = {key: cuts_of(body) for key, body in {id(one.body): one.body for one in placed}.items()}
         cuts = [known[id(one.body)] for one in placed]
         #: True at (i, j) where i, moved up, runs into j; moved down, j runs into i
-        drawn = [Heights(one, some) for one, some in zip(placed, cuts, strict=True)]
-        self.up = np.array([[i != j and runs_into(a, b) for j, b in enumerate(drawn)] for i, a in enumerate(drawn)])
-        #: Of each retaining ring by share: what it runs into, spread or pressed together by it, moved up and down
-        self.spread: dict[int, dict[float, tuple[np.ndarray, np.ndarray]]] = {}
-        for i, (one, some) in enumerate(zip(placed, cuts, strict=True)):
-            for share in SPREAD if one.kind == "ring" else ():
-                ring = Heights(one, spread(some, share))
-                found = [(i != j and runs_into(ring, b), i != j and runs_into(b, ring)) for j, b in enumerate(drawn)]
-                self.spread.setdefault(i, {})[share] = tuple(np.array(found).T)
         self.solids = [one.solid for one in placed]
         self.boxes = np.array([solid.bounding_box() for solid in self.solids])
+        drawn = [Heights(one, some) for one, some in zip(placed, cuts, strict=True)]
+        self.up = np.array([[i != j and runs_into(a, b) for j, b in enumerate(drawn)] for i, a in enumerate(drawn)])
+        #: Of each retaining ring, by what its radii are made greater: what it then runs into, moved up and down
+        self.spread: dict[int, dict[float, tuple[np.ndarray, np.ndarray]]] = {}
+        for i, (one, some) in enumerate(zip(placed, cuts, strict=True)):
+            most_mm = SPREAD_SHARE * 0.5 * (self.boxes[i, 3] - self.boxes[i, 0])
+            for by_mm in SPREAD_MM if one.kind == "ring" else ():
+                if abs(by_mm) <= most_mm:
+                    ring = Heights(one, spread(some, by_mm))
+                    ways = [(i != j and runs_into(ring, b), i != j and runs_into(b, ring)) for j, b in enumerate(drawn)]
+                    self.spread.setdefault(i, {})[by_mm] = tuple(np.array(ways).T)
         #: True where two are one, such as a motor's rotor in its own bearings
         self.one = np.array([[b.name in a.never_leaves or a.name in b.never_leaves for b in placed] for a in placed])
         self.heads = [_head(one, some) for one, some in zip(placed, cuts, strict=True)]
@@ -181,7 +189,7 @@ class Assembly:
             if one.kind == "screw":
                 held = self._threaded(i, some[0] if self.heads[i] * one.sign > 0.0 else some[-1])
                 self.tied[i, held] = self.tied[held, i] = True
-        self.spread_by: dict[str, float] = {}  #: share by which a retaining ring was spread
+        self.spread_by_mm: dict[str, float] = {}  #: by what a retaining ring was spread
         self.sideways: set[str] = set()  #: what has left so
         self.groups = 0  #: of several parts that left together
 
@@ -220,11 +228,11 @@ class Assembly:
         if self.placed[i].kind == "bolt":
             # What stands in its way on both sides is what it holds, and leaves it with its nut.
             return not (above ^ below).any()
-        ways = ((share, way[others].any()) for share, both in self.spread[i].items() for way in both)
-        share = next((share for share, blocked in ways if not blocked), None)
-        if share is not None:
-            self.spread_by[self.placed[i].name] = share
-        return share is not None
+        ways = ((by_mm, way[others].any()) for by_mm, both in self.spread[i].items() for way in both)
+        least = next((by_mm for by_mm, blocked in ways if not blocked), None)
+        if least is not None:
+            self.spread_by_mm[self.placed[i].name] = least
+        return least is not None
 
     def _leaves_sideways(self, i: int, members: Sequence[int]) -> bool:
         """Return whether a bumper, or a screw out of its holes, leaves across the axis in one of twelve directions.
