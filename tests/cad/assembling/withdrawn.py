@@ -35,7 +35,7 @@ LEAST_PIXELS = 6
 ALONG_MM = 0.2
 """Heights closer than this are touching: cones are drawn as steps of ``STEP_MM``, on both parts."""
 STEP_MM = 0.1
-LIFT_MM = 0.5
+LIFT_MM = 1.0
 """In what steps a screw rises."""
 FAR_MM = 1000.0
 """Out of the robot."""
@@ -83,14 +83,17 @@ class Cut:
 
 def cuts_of(body: m3.Manifold) -> list[Cut]:
     """Cut a solid between every two heights of its corners, and more often where its walls are slanted."""
-    heights = np.unique(np.round(np.asarray(body.to_mesh64().vert_properties)[:, 2], 4))
+    mesh = body.to_mesh64()
+    corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts)]
+    upright = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    bottom, top = corners[..., 2].min(axis=1), corners[..., 2].max(axis=1)
+    slanted = (np.abs(upright[:, 2]) > 1e-3 * np.linalg.norm(upright, axis=1)) & (top - bottom > 1e-3)
+    heights = np.unique(np.round(corners[..., 2], 4))
     heights = heights[np.concatenate([[True], np.diff(heights) > 2e-3])]
     found = []
     for low, high in pairwise(heights):
-        edge = min(1e-3, 0.1 * (high - low))
-        ends = [body.slice(float(z)).area() for z in (low + edge, high - edge)]
-        steps = 1 if abs(ends[0] - ends[1]) < 0.05 else int(np.ceil((high - low) / STEP_MM))
-        at = np.linspace(low, high, steps + 1).tolist()
+        cone = np.any(slanted & (bottom < high - 1e-3) & (top > low + 1e-3))
+        at = np.linspace(low, high, 1 + (int(np.ceil((high - low) / STEP_MM)) if cone else 1)).tolist()
         for start, stop in pairwise(at):
             section = body.slice(0.5 * (start + stop)).offset(-PLAY_MM, m3.JoinType.Miter)
             if not section.is_empty():
