@@ -26,6 +26,7 @@ from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import SCREWS, Group, JointKind, Role
 from pareto_monoped.robot.build import Robot
 
+# All lengths and limits are our own choice.
 RASTER_MM = 0.2
 """Distance of the rays."""
 PLAY_MM = 0.015
@@ -36,7 +37,7 @@ ALONG_MM = 0.2
 """Heights closer than this are touching: cones are drawn as steps of ``STEP_MM``, on both parts."""
 STEP_MM = 0.1
 LIFT_MM = 1.0
-"""In what steps a screw rises."""
+"""In what steps a screw rises; its head is 2 mm high, and jumps over nothing."""
 FAR_MM = 1000.0
 """Out of the robot."""
 LEAST_MM3 = 0.5
@@ -168,10 +169,10 @@ class Assembly:
         self.placed = placed
         known = {key: cuts_of(body) for key, body in {id(one.body): one.body for one in placed}.items()}
         cuts = [known[id(one.body)] for one in placed]
-        #: True at (i, j) where i, moved up, runs into j; moved down, j runs into i
         self.solids = [one.solid for one in placed]
         self.boxes = np.array([solid.bounding_box() for solid in self.solids])
         drawn = [Heights(one, some) for one, some in zip(placed, cuts, strict=True)]
+        #: True at (i, j) where i, moved up, runs into j; moved down, j runs into i
         self.up = np.array([[i != j and runs_into(a, b) for j, b in enumerate(drawn)] for i, a in enumerate(drawn)])
         #: Of each retaining ring, by what its radii are made greater: what it then runs into, moved up and down
         self.spread: dict[int, dict[float, tuple[np.ndarray, np.ndarray]]] = {}
