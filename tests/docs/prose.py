@@ -18,9 +18,15 @@ def said(page: str) -> str:
 
 
 def untold(page: str, sentences: Iterable[str]) -> list[str]:
-    """Those sentences, with the numbers that they should have, which the page does not say."""
-    text = said(page)
-    return [sentence for sentence in sentences if sentence not in text]
+    """Those sentences, with the numbers that they should have, which the page does not say; rows have bars."""
+    text, whole = said(page), " ".join((ROOT / page).read_text(encoding="utf-8").split())
+    return [sentence for sentence in sentences if sentence not in (whole if "|" in sentence else text)]
+
+
+def given(page: str, script: str, option: str) -> int:
+    """The number that a page gives to an option of a script, the same wherever it names both."""
+    (number,) = set(re.findall(rf"{re.escape(script)}.* --{option} (\d+)", (ROOT / page).read_text(encoding="utf-8")))
+    return int(number)
 
 
 def table(page: str, *titles: str) -> pd.DataFrame:
