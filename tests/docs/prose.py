@@ -58,3 +58,13 @@ def between(values: Iterable[float], digits: int = 0) -> str:
     """The least and the greatest: "3.0 to 3.6"."""
     kept = list(values)
     return f"{min(kept):.{digits}f} to {max(kept):.{digits}f}"
+
+
+def mm(metres: float) -> str:
+    """A length as "0.3 mm"."""
+    return f"{1e3 * metres:g} mm"
+
+
+def percent(share: float) -> str:
+    """A share as "5 percent"."""
+    return f"{100.0 * share:g} percent"

@@ -35,8 +35,8 @@ TOLD = {
             "[0.7, 0.015, 0.5e-3, 0.1]",
         ),
         (
-            "friction of 0.5 to 2 times, torque constants of 0.92 to 1.1 times, delays of 0 to 2.95 ms and stiffness of "
-            "0.7 to 1.3 times",
+            "friction of 0.5 to 2 times, torque constants of 0.92 to 1.1 times, delays of 0 to 2.95 ms and stiffness "
+            "of 0.7 to 1.3 times",
             "rng.uniform(0.5, 2.0), rng.uniform(0.92, 1.1), 50e-6 * rng.integers(0, 60), rng.uniform(0.7, 1.3)",
         ),
         (
