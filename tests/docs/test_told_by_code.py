@@ -13,11 +13,13 @@ from pareto_monoped.jump.balance import balanced
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.gravity import least_energy_j
+from pareto_monoped.jump.landing import LANDING
 from pareto_monoped.robot.population import robot_arrays
 from tests.docs.prose import between, untold
 from tests.docs.scripts import imported
 
 MAP = map_for("VT8020")
+DUTY = MAP.settings.parts.duty
 PAPER = complete(np.array([case.design.as_array() for case in PAPER_CASES.values()]))
 NOMINAL, A, B, C = range(4)
 REFERENCE, RIGID = (load_calibration(name) for name in ("reference", "reference-3"))
@@ -72,9 +74,20 @@ def actuators():
     _, thigh, shank = robot.body_inertia_kg_m2[0][:, 1, 1] + masses * at**2  # about hip and knee
     fastest = 2.0 * np.pi / 0.2**2  # 1 rad in 0.2 s
     knee, hip = fastest * shank, 0.5 * fastest * (thigh + masses[2] * 0.4**2 - shank)
+    told = DUTY.torque_shares[2] * 33.0 * 4.0 / 6.0  # at 4:1
+    yield f"A hip of 4:1 folds in {0.2 * np.sqrt(hip / told):.2f} s with this torque"
     yield f"Shank and foot ({shank:.3f} kg m2) need {knee:.1f} N m at the knee, {knee / 33.0:.2f} of"
     yield f"need {hip:.1f} N m at the hip, {hip / 33.0:.2f} of it"
     yield f"The VT8020's estimate is {1e4 * load_motor('VT8020').rotor_inertia_kg_m2:.2f}e-4 kg m2"
+
+
+def landing():
+    ratio = LANDING.damping_ratio  # of a body that comes with speed 1 onto a spring with omega = 1
+    times = np.linspace(0.0, 4.0, 40001)
+    swing = np.sqrt(1.0 - ratio**2)
+    way = np.exp(-ratio * times) * np.sin(swing * times) / swing
+    force = -np.gradient(np.gradient(way, times), times)[2:]
+    yield f"{2.0 * way.max() * force.max():.2f} times that of a constant force"  # which stops it within 1 / 2 a
 
 
 def losses():
@@ -143,13 +156,15 @@ def python():
         designs = np.repeat(PAPER[:1], len(both), axis=0)
         designs[:, :4] = both
         spans.append(between(robot_arrays(designs, found).body_mass_kg.sum(axis=1), 1))
+    assert MAP.lookup(4.41) is MAP.lookup(4.47)
+    yield "4.41 and 4.47 are one gearbox and one jump"
     yield f"legs with the U8 weigh about {spans[0]} kg, those with the VT8020, the default, {spans[1]} kg"
 
 
 @pytest.mark.parametrize(
     "page",
-    [actuators, losses, pytest.param(model, marks=pytest.mark.long), python],
-    ids=["actuators", "losses", "model", "python"],
+    [actuators, landing, losses, pytest.param(model, marks=pytest.mark.long), python],
+    ids=["actuators", "landing", "losses", "model", "python"],
 )
 def test_figures_are_those_that_the_package_computes(page):
     assert untold(f"docs/{page.__name__}.md", page()) == []

@@ -21,7 +21,6 @@ from pareto_monoped.actuator.settings import SHIFTS
 from pareto_monoped.cad.check import making as tools
 from pareto_monoped.cad.check import result
 from pareto_monoped.geometry import features, gears, making
-from pareto_monoped.jump import audit
 from pareto_monoped.strength import drive
 from tests.docs.prose import mm, percent, untold
 
@@ -31,7 +30,6 @@ RATED, DUTY = PARTS.rating, PARTS.duty
 SERVICE = default_service()
 _NEEDLE_MM, _PIN_MM = PARTS.needles.diameter_mm, PARTS.carrier.pin_diameter_mm
 NEEDLES_AROUND = int(np.pi / np.arcsin(_NEEDLE_MM / (_PIN_MM + _NEEDLE_MM)))
-LIMITS = {limit.name: limit.most for limit in audit.LIMITS}
 
 
 SETTINGS = [
