@@ -74,6 +74,10 @@ def actuators():
     _, thigh, shank = robot.body_inertia_kg_m2[0][:, 1, 1] + masses * at**2  # about hip and knee
     fastest = 2.0 * np.pi / 0.2**2  # 1 rad in 0.2 s
     knee, hip = fastest * shank, 0.5 * fastest * (thigh + masses[2] * 0.4**2 - shank)
+    lewis = [entry for entry in map_for("VT8020", "paper").entries if entry.actuator]
+    ends = [max(e.actuator.ratio for e in lewis if e.actuator.family == name) for name in ("ISSPG", "ESSPG")]
+    yield f"ISSPG at {ends[0]:g}:1, ESSPG at {ends[1]:g}:1"
+    assert map_for("VT8020", "paper").lookup(5.9).family == "ESSPG"
     told = DUTY.torque_shares[2] * 33.0 * 4.0 / 6.0  # at 4:1
     yield f"A hip of 4:1 folds in {0.2 * np.sqrt(hip / told):.2f} s with this torque"
     yield f"Shank and foot ({shank:.3f} kg m2) need {knee:.1f} N m at the knee, {knee / 33.0:.2f} of"

@@ -54,6 +54,7 @@ SETTINGS = [
     f"two planets, {PARTS.webs.clearance_mm:g} mm from their tips",
     f"Helix deviations of class {RATED.accuracy_class} make",
     f"the width is at least {width.LEAST_WIDTH_MODULES:g} modules",
+    f"with a friction coefficient of {MAP.settings.materials.gear_steel.mesh_friction_coefficient:g} (greased steel)",
     f"assumed to be {PEAK_TO_CONTINUOUS:.2f} times the continuous one",
     f"with a friction of {drive._SIDEWAYS['hip'][1]:g} at the hip, and "
     f"{percent(drive._SIDEWAYS['knee'][1])} of the chain",
@@ -66,7 +67,7 @@ SETTINGS = [
     f"**Bearing friction** is ${SERVICE.bearing_friction_coefficient:g} P d / 2$ (SKF), "
     f"{SERVICE.needle_friction_coefficient:g} for the needle bearing",
     f"thinned by {PARTS.gears.backlash_modules:g} modules each (`paper`: by {PARTS.gears.backlash_mm:g} mm)",
-    f"with pins of {PARTS.carrier.pin_diameter_mm:g} mm, the planets of a motor",
+    f"with pins of {PARTS.carrier.pin_diameter_mm:g} mm, the planets of a small motor",
     f"Published for motors of its class are {1e5 * load_motor('U8').rotor_inertia_kg_m2:.2f}e-5",
     f"| $S_H$ at least {RATED.flank_safety:g}, every flank |",
     f"| $S_F$ at least {RATED.root_safety:g}, every root |",

@@ -8,16 +8,17 @@ import pytest
 
 import tests.test_architecture as house
 from pareto_monoped.actuator import ratiomap
-from pareto_monoped.actuator.motors import load_motor
+from pareto_monoped.actuator.motors import load_motor, motor_names
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.analysis import alternatives, at_bounds, choices, compare, limit, remarks, robustness, sensitivity
 from pareto_monoped.campaign import coordinator, grid, page
 from pareto_monoped.cli import campaign as campaigns
+from pareto_monoped.cli import process
 from pareto_monoped.compute import chunks, crew
 from pareto_monoped.definition.algorithms import PAPER_ITERATIONS, SurrogateSettings
 from pareto_monoped.definition.goals import LEAST_SAFETY, MIN_HEIGHT_M
 from pareto_monoped.definition.study import Study, load_study
-from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, MOST_KNOTS, NAMES, PAPER_CASES, UPPER
+from pareto_monoped.design import BASE_START_HEIGHT_M, GRAVITY_M_PER_S2, LOWER, MOST_KNOTS, NAMES, PAPER_CASES, UPPER
 from pareto_monoped.jump import audit, controller, end_stops, landing, peers, screen, table1, torques
 from pareto_monoped.jump import model as jump_model
 from pareto_monoped.jump.calibration import load_calibration
@@ -74,7 +75,10 @@ SETTINGS = {
         f"with steps of {1e3 * compare._STEP_S:g} ms",
         f"{compare._STUDENT} standard deviations",
     ],
-    "docs/getting_started.md": [f"less than {choices.DEAR} times the least battery energy stored"],
+    "docs/getting_started.md": [
+        {6: "The package contains six motors"}[len(motor_names())],
+        f"less than {choices.DEAR} times the least battery energy stored",
+    ],
     "docs/landing.md": [
         f"- {2.0 * landing._FLIGHT_RATIO:g}\\,I\\omega_f",
         f"$l_c$ is {landing.LANDING.reach:g} times the length",
@@ -104,6 +108,10 @@ SETTINGS = {
         f"the drives' stiffness of {LEG.hip_drive.stiffness_n_m_per_rad:g} N m/rad",
     ],
     "docs/limit.md": [
+        f"`--controller torque_over_time:{limit.LAW.knots}` or `tracking:{limit.TRACKING.knots}`",
+        f"With {percent(limit._TORQUE)} less torque, or",
+        f"Late is {1e3 * limit._DELAY_S:g} ms of delay, then come {percent(limit._TORQUE)} less and more torque",
+        f"with C from {LOWER[NAMES.index('damping_n_s_per_m')]:g} to {UPPER[NAMES.index('damping_n_s_per_m')]:g} N s/m",
         f"`knots` is their number per joint, 2 to {MOST_KNOTS} (8 if it is left out)",
         f"to zero as the foot rises by {mm(REFERENCE.gate.length_m)}",
         f"the heights of {samples.DEFAULT_SAMPLES} robots within",
@@ -123,6 +131,12 @@ SETTINGS = {
         f"{simulator._BEFORE} jumps of the same study under the virtual leg",
     ],
     "docs/model.md": [
+        f"The best of {load_study(ROOT / 'studies' / 'quick.toml').evaluations} jumps",
+        f"less `regeneration_share` ({REFERENCE.drive.regeneration_share:g}) of what flows back, plus "
+        f"`standby_power_w` ({REFERENCE.drive.standby_power_w:g})",
+        f"drives and a step of {1e3 * REFERENCE.simulation.timestep_s:g} ms, their peaks",
+        f"perturbed by up to {audit.PERTURBATION:.0e}), all".replace("e-06", "e-6"),
+        f"C, at {PAPER_CASES['C'].height_m:.3f} m, higher than B",
         f"gravity {GRAVITY_M_PER_S2:g} m/s2",
         f"$l_0 = {REFERENCE.controller.rest_length_m:g}$ m",
         f"$H_0$ = {BASE_START_HEIGHT_M:g} m, as if",
@@ -224,6 +238,7 @@ SETTINGS = {
         {16: "all measures of sixteen probe designs"}[peers._DRAWN + len(PAPER_CASES)],
     ],
     "docs/studies.md": [
+        f"current generation (exit code {process._INTERRUPTED})",
         f"fitted anew to {prediction._TRAINING:,} simulated designs",
         f"with more than {prediction._CUBIC_UP_TO} features it is a quadratic",
         f"its errors at the latest {prediction._CORRECTING} designs",
