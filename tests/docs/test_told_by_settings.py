@@ -213,7 +213,7 @@ SETTINGS = {
         f"kept at the {FIT.mass.base_structure_mass_kg:g} kg",
         f"Breaking load over the largest pull, at least {NEEDED['chain_breaking']:g}",
         f"Travel of a bumper over its compression, at least {NEEDED['knee_bumper']:g}",
-        f"against yield, at least {NEEDED['hip_stop_rods']:g} (`strength/stop_seats.py`)",
+        f"against yield, at least {NEEDED['hip_stop_rods']:g} (`strength/stops.py`)",
         f"The dowels between axle and shank, at least {NEEDED['knee_axle_dowels']:g}",
         f"All against yield, at least {NEEDED['hip_spline']:g}; bonds at 5 MPa, at least {NEEDED['hip_ring_bond']:g}",
         f"must not slip, at least {NEEDED['hip_motor_reaction']:g}",
@@ -229,6 +229,8 @@ SETTINGS = {
         f"Up to sixteen such groups of {robustness._SHARED} are under way",
         f"| after {crew.Limits().task_s:g} s without an answer, or {crew.Limits().times:g} times the longest "
         f"task so far",
+        f"| the coordinator waits {crew.Limits().absent_s:g} s for it and for workers",
+        f"| after {crew.Limits().absent_s:g} s more the command ends",
         {4: "| a task ends four workers |"}[crew._MOST_LOSSES],
         {16: "have reached a sixteenth of it"}[kept_front._SHARE],
         f"robust evaluation ({samples.DEFAULT_SAMPLES} jumps per design)",
