@@ -17,7 +17,10 @@ TOLD = {
     ("docs/examples.md", "tests/examples/test_examples.py"): [("under 40 lines", "splitlines()) < 40")],
     ("docs/python.md", "tests/examples/test_examples.py"): [("under 40 lines", "splitlines()) < 40")],
     ("docs/limit.md", "benchmarks/limit_collocation.py"): [("with a gate of 2 mm in place of", "length_m=0.002")],
-    ("docs/limit.md", "benchmarks/limit_fronts.py"): [("Both studies have 8,000 jumps", "default=8000")],
+    ("docs/limit.md", "benchmarks/limit_fronts.py"): [
+        ("Both studies have 8,000 jumps", "default=8000"),
+        ("With six knots per joint", "default=6"),
+    ],
     ("docs/model.md", "benchmarks/jump_conditioning.py"): [("VT8020 and 200 random designs", "else 200)")],
     ("docs/model.md", "benchmarks/least_energy.py"): [("CMA-ES finds for 0.8 m", "TARGET_M, STEP_S = 0.8, ")],
     ("docs/model.md", "tools/fit_paper.py"): [
