@@ -21,6 +21,7 @@ from pareto_monoped.actuator.settings import SHIFTS
 from pareto_monoped.cad.check import making as tools
 from pareto_monoped.cad.check import result
 from pareto_monoped.geometry import features, gears, making
+from pareto_monoped.materials import ALLOYS, GEAR_GRADES
 from pareto_monoped.strength import drive
 from tests.docs.prose import mm, percent, untold
 
@@ -28,6 +29,7 @@ MAP = map_for("VT8020")
 PARTS = MAP.settings.parts
 RATED, DUTY = PARTS.rating, PARTS.duty
 SERVICE = default_service()
+CASED, NITRIDED = (GEAR_GRADES[name].layer_modules for name in (RATED.sun_grade, RATED.ring_grade))
 _NEEDLE_MM, _PIN_MM = PARTS.needles.diameter_mm, PARTS.carrier.pin_diameter_mm
 NEEDLES_AROUND = int(np.pi / np.arcsin(_NEEDLE_MM / (_PIN_MM + _NEEDLE_MM)))
 
@@ -37,6 +39,8 @@ SETTINGS = [
     f"A ratio less than {0.05 * 10.0**-ratiomap._EDGE_DECIMALS:.0e} below",
     f"ISO 54 from {min(MAP.settings.modules_mm):g} to {max(MAP.settings.modules_mm):g} mm",
     f"in modules: {', '.join(map(str, SHIFTS[:-1]))} and {SHIFTS[-1]}".replace(".0,", ",").replace("0.0)", "0)"),
+    f"depth of case ({CASED[0]:g} to {CASED[1]:g} modules) or nitriding layer ({NITRIDED[0]:g} to {NITRIDED[1]:g})",
+    f"{ALLOYS['raceway_pin'].hardness.split(' to ')[0]} HRC or more, ground to",
     f"tip rounding of {gears.FILLET:g} modules",
     f"roots are the arcs of {gears.FILLET:g} modules",
     f"meet the mate {gearset.FORM_MARGIN_MODULES:g} modules before its form circle",
