@@ -227,8 +227,8 @@ SETTINGS = {
     ],
     "docs/scaling.md": [
         f"Up to sixteen such groups of {robustness._SHARED} are under way",
-        f"| after {crew.Limits().task_s:g} s without an answer, or {crew.Limits().times:g} times the longest "
-        f"task so far",
+        f"| after {crew.Limits().task_s:g} s without an answer, {crew.Limits().first_s:g} s in its first task, "
+        f"{crew.EXPORT_LIMITS.task_s:g} s in an export, or {crew.Limits().times:g} times the longest task so far",
         f"| the coordinator waits {crew.Limits().absent_s:g} s for it and for workers",
         f"| after {crew.Limits().absent_s:g} s more the command ends",
         {4: "| a task ends four workers |"}[crew._MOST_LOSSES],
