@@ -18,9 +18,15 @@ def said(page: str) -> str:
 
 
 def untold(page: str, sentences: Iterable[str]) -> list[str]:
-    """Those sentences, with the numbers that they should have, which the page does not say."""
-    text = said(page)
-    return [sentence for sentence in sentences if sentence not in text]
+    """Those sentences, with the numbers that they should have, which the page does not say; rows have bars."""
+    text, whole = said(page), " ".join((ROOT / page).read_text(encoding="utf-8").split())
+    return [sentence for sentence in sentences if sentence not in (whole if "|" in sentence else text)]
+
+
+def given(page: str, script: str, option: str) -> int:
+    """The number that a page gives to an option of a script, the same wherever it names both."""
+    (number,) = set(re.findall(rf"{re.escape(script)}.* --{option} (\d+)", (ROOT / page).read_text(encoding="utf-8")))
+    return int(number)
 
 
 def table(page: str, *titles: str) -> pd.DataFrame:
@@ -52,3 +58,13 @@ def between(values: Iterable[float], digits: int = 0) -> str:
     """The least and the greatest: "3.0 to 3.6"."""
     kept = list(values)
     return f"{min(kept):.{digits}f} to {max(kept):.{digits}f}"
+
+
+def mm(metres: float) -> str:
+    """A length as "0.3 mm"."""
+    return f"{1e3 * metres:g} mm"
+
+
+def percent(share: float) -> str:
+    """A share as "5 percent"."""
+    return f"{100.0 * share:g} percent"

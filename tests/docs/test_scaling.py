@@ -11,8 +11,6 @@ from pathlib import Path
 
 import pytest
 
-from pareto_monoped.analysis import robustness
-from pareto_monoped.compute.chunks import AT_ONCE
 from tests.compute.dask_here import free_port
 
 ROOT = Path(__file__).parents[2]
@@ -52,12 +50,6 @@ def test_shares_of_an_evaluation_add_up():
     for name, algorithm, storage, rest, together, jump, at_cores in shares:
         assert float(algorithm) + float(storage) + float(rest) == pytest.approx(float(together), abs=0.0016), name
         assert round(float(jump) / float(together), 1) == pytest.approx(float(at_cores), abs=0.5), name
-
-
-def test_groups_of_robust_designs_are_those_of_the_code():
-    assert f"or {robustness._SHARED} designs of `robust`" in TEXT
-    assert AT_ONCE == 16
-    assert "Up to sixteen such groups" in TEXT
 
 
 @pytest.mark.long

@@ -72,3 +72,12 @@ def test_the_tree_names_every_package_and_no_other():
     assert named == there - {"__init__.py", "__main__.py"}
     rooms = {path.parent.name + "/" for path in (ROOT / "pareto_monoped" / "cad").glob("*/__init__.py")}
     assert set(re.findall(r"^ {12}(\w+/) ", tree, re.M)) == rooms
+
+
+@pytest.mark.parametrize("page", sorted((ROOT / "docs").glob("*.md")), ids=lambda page: page.name)
+def test_modules_that_a_page_names_exist(page):
+    """As a path from the root or from the package; exports have folders of their own names."""
+    rooms = {path.parent.name for path in (ROOT / "pareto_monoped").rglob("__init__.py")} - {"cad"}
+    named = re.findall(r"`([\w/]+/\w+\.py)`", page.read_text(encoding="utf-8"))
+    there = [name for name in named if (ROOT / name).exists() or (ROOT / "pareto_monoped" / name).exists()]
+    assert [name for name in named if name not in there and name.split("/")[0] in rooms | {"tests", "benchmarks"}] == []
