@@ -8,6 +8,10 @@
 //   "bars"     ends [[x low, x high, y low, y high], ...] and line
 // and may have stands (what a point stands for, given to the listener of a click) and text(i) (shown over point i).
 
+await nextTask();
+const Plotly = makePlotly();
+await nextTask();
+
 const charts = [];
 const NEAR_PX = 14; // a click this near to a mark means it
 const TOUCH_PX = 22; // half of the 44 px that a finger needs (WCAG 2.5.5)

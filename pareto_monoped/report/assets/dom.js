@@ -22,6 +22,9 @@ function bytesOf(base64) {
 
 function inflated(bytes) { return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))); }
 
+// Lets the browser paint and listen between two long steps.
+function nextTask() { return new Promise((done) => setTimeout(done)); }
+
 function byId(id) { return document.getElementById(id); }
 
 function make(tag, attributes = {}, ...children) {
