@@ -54,6 +54,19 @@ function tintOf(marker, i) {
 // A canvas that is read back as an image, and so is better kept out of the graphics card.
 function softly(canvas) { return canvas.getContext("2d", { willReadFrequently: true }); }
 
+// A canvas of this size on the page, empty, with its context and its pixels per pixel of the page.
+function cleared(canvas, width, height) {
+  const scale = paperScale() ?? (window.devicePixelRatio || 1);
+  Object.assign(canvas, { width: Math.round(width * scale), height: Math.round(height * scale) });
+  return [softly(canvas), scale];
+}
+
+// A canvas over the frame of the axes as an image in a picture of plotly's.
+function imageOf(canvas, k = 0) {
+  const own = k ? k + 1 : "";
+  return { source: canvas.toDataURL(), xref: `x${own} domain`, yref: `y${own} domain`, x: 0, y: 1, sizex: 1, sizey: 1, sizing: "stretch", layer: "above" };
+}
+
 const FAINT = 0.3; // marks below it are faint together, however many lie over each other
 
 function paintMarks(context, layer, scale) {

@@ -62,9 +62,10 @@ function placedNames(marks, { left, top, width, height }) {
       return a >= left && b <= left + width && c >= top && d <= top + height && !taken.some(([e, f, g, h]) => a < f && b > e && c < h && d > g);
     };
     const spot = spots.find((one) => free(one) && own(one)) ?? spots.find(free) ?? spots[0];
-    const box = boxed(spot);
-    taken.push(box);
-    return { ...mark, from: box[0], to: box[1], at: spot[1] };
+    const [from, to, ...rest] = boxed(spot), at = spot[1];
+    taken.push([from, to, ...rest]);
+    const far = Math.hypot(Math.max(from - mark.px, mark.px - to, 0), Math.max(Math.abs(at - mark.py) - 8, 0)) > 14;
+    return { ...mark, from, to, at, far };
   });
 }
 
