@@ -15,7 +15,7 @@ function columnOf(study, name) {
 }
 
 function madeColumn({ trials: { columns, packed, trial }, robust }, name) {
-  if (columns[name]) return Float32Array.from(columns[name], (value) => value ?? NaN);
+  if (columns[name]) return columns[name] instanceof Float32Array ? columns[name] : Float32Array.from(columns[name], (value) => value ?? NaN);
   if (packed?.[name] !== undefined) return unpack(packed[name]);
   // What is under uncertainty is there of some trials only.
   const values = new Float32Array(trial.length).fill(NaN);
@@ -27,7 +27,7 @@ function madeColumn({ trials: { columns, packed, trial }, robust }, name) {
 function unpack(text) { return new Float32Array(bytesOf(text).buffer); }
 
 for (const { trials: { columns } } of page.studies) {
-  for (const [name, text] of Object.entries(columns)) if (typeof text === "string") columns[name] = Array.from(unpack(text), finite);
+  for (const [name, text] of Object.entries(columns)) if (typeof text === "string") columns[name] = unpack(text);
 }
 
 // The measures and variables that some study has of every trial, in the order of the page's quantities.
