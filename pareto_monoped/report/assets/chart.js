@@ -46,14 +46,17 @@ function configOf(picture, tools, scrollZoom) {
   return { displaylogo: false, responsive: false, scrollZoom, doubleClick: false, displayModeBar: true, showTips: false, modeBarButtons: [...(tools.length ? [tools] : []), pictures] };
 }
 
-// Draws anew what has changed. Plotly's bar of tools stands beside a chart, because a picture or a slider for a screen
-// reader may hold no buttons.
+// Plotly's bar of tools stands beside a chart, because a picture or a slider for a screen reader may hold no buttons.
+function boxed(node) {
+  if (node.parentElement.classList.contains("framed")) return;
+  const box = make("div", { class: "framed" });
+  node.replaceWith(box);
+  box.append(node);
+}
+
+// Draws anew what has changed.
 function react(node, traces, layout, config) {
-  if (!node.parentElement.classList.contains("framed")) {
-    const box = make("div", { class: "framed" });
-    node.replaceWith(box);
-    box.append(node);
-  }
+  boxed(node);
   Plotly.react(node, traces, layout, config);
   const bar = node.querySelector(".modebar-container");
   if (bar) node.before(bar);
@@ -107,6 +110,7 @@ class Chart {
     this.sheets[1].append(this.words);
     this.tip = make("div", { class: "tip", hidden: "" });
     node.replaceChildren(this.back, ...this.sheets, this.tip);
+    boxed(node);
     if (label) describe(node, label);
     this.listen();
   }
@@ -140,9 +144,17 @@ class Chart {
     if (!this.given) return;
     this.measure();
     for (const layer of this.layers) this.place(layer);
-    const { all } = this.box, { l, r, t, b } = this.margin;
     this.hideTip();
     this.paint();
+    this.drawAxes();
+    this.shown?.();
+    // Plotly's part takes long at first, and then is a task of its own.
+    if (this.followed || paperScale()) this.drawLines();
+    else setTimeout(() => this.drawLines());
+  }
+
+  drawLines() {
+    const { all } = this.box, { l, r, t, b } = this.margin;
     react(this.node, this.layers.flatMap((layer) => (this.space ? [] : tracesOf(layer))), {
       width: all[0], height: all[1], margin: { l, r, t, b, pad: 0 }, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { ...FONT, color: colour("ink") }, showlegend: false, hovermode: false,
       dragmode: this.space || COARSE ? false : this.mode ?? "zoom", modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("faint"), activecolor: colour("c0"), orientation: "h" },
@@ -150,8 +162,6 @@ class Chart {
       newselection: { line: { color: colour("select"), width: 1.5 } },
     }, this.config());
     this.follow();
-    this.drawAxes();
-    this.shown?.();
   }
 
   // One object per chart: another one makes plotly begin anew.

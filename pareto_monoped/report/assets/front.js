@@ -93,14 +93,12 @@ function sizesOf(study, name, rows, usual) {
 
 function cloudLayers(study) {
   const card = page.studies[study];
-  const onFront = new Set(card.front);
-  const ranged = filtered();
-  const tint = tinted();
+  const onFront = new Set(card.front), ranged = filtered(), mask = masked(study), tint = tinted();
   const list = [];
   for (const [letter, wanted, name] of [["f", state.layers.cloud, "dominated"], ["i", state.layers.infeasible, "infeasible"]]) {
     if (!wanted) continue;
     const rows = rowsIn(card, letter).filter((row) => !onFront.has(row));
-    const opacity = ranged ? rows.map((row) => (inRanges(study, row) ? 0.8 : 0.06)) : tint ? 0.6 : 0.35;
+    const opacity = ranged ? rows.map((row) => (mask[row] ? 0.8 : 0.06)) : tint ? 0.6 : 0.35;
     const marker = letter === "f"
       ? { size: 4, color: page.studies.length > 1 ? studyColour(study) : colour("cloud"), opacity, ...(tint ? { ramp: rangeOver(tint) } : {}) }
       : { size: 6, symbol: "cross", color: colour("bad"), opacity: ranged ? opacity : 0.6 };
@@ -124,7 +122,7 @@ function frontLayers(study) {
   const tint = studyColour(study);
   const many = [...state.visible].reduce((sum, i) => sum + page.studies[i].front.length, 0);
   const size = many > 1500 ? 4.5 : many > 300 ? 6 : 7.5;
-  const opacity = card.front.map((row) => (inRanges(study, row) ? 1 : 0.15));
+  const mask = masked(study), opacity = card.front.map((row) => (mask[row] ? 1 : 0.15));
   const marker = { size, symbol: MARKS[study % 6], color: tint, opacity };
   if (card.trials.columns.motor) {
     // Motors differ in colour and in mark: a measure may take the colour.

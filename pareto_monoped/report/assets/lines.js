@@ -84,10 +84,10 @@ function drawAlong() {
     const y = padded(limits, 0.08);
     const one = (i, rows, opacity) => {
       const { trials } = page.studies[i], value = (name, row) => trials.columns[name][row];
-      const family = (row) => (joint ? page.gearboxes[value(joint, row)]?.family : "ISSPG");
+      const family = (row) => page.gearboxes[value(joint, row)]?.family;
       return {
         x: rows.map((row) => value(FIRST, row) * quantity[FIRST].scale), y: rows.map((row) => value(variable.name, row) * q.scale), opacity,
-        mark: rows.map((row) => (family(row) === "ESSPG" ? "diamond" : "circle")), colour: studyColour(i),
+        mark: joint ? rows.map((row) => (family(row) === "ESSPG" ? "diamond" : "circle")) : "circle", colour: studyColour(i),
         colours: trials.columns.motor ? rows.map((row) => colour(`c${motorTint(kitOf(page.studies[i], row))}`)) : null,
       };
     };

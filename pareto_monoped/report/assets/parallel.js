@@ -43,8 +43,8 @@ function linesToDraw() {
   const others = [], onFronts = [];
   for (const i of state.visible) {
     const study = page.studies[i];
-    const front = keptFront(i), onFront = new Set(front);
-    if (state.layers.cloud) for (const row of feasibleRows(study)) if (!onFront.has(row) && inRanges(i, row)) others.push([i, row]);
+    const front = keptFront(i), onFront = new Set(front), mask = masked(i);
+    if (state.layers.cloud) for (const row of feasibleRows(study)) if (mask[row] && !onFront.has(row)) others.push([i, row]);
     for (const row of front) onFronts.push([i, row]);
   }
   par.all = onFronts.length + others.length;
@@ -186,10 +186,10 @@ function describeRanges() {
   if (!filtered()) { note.textContent = words; return; }
   let onFront = 0, all = 0, total = 0;
   for (const i of state.visible) {
-    const study = page.studies[i];
+    const rows = feasibleRows(page.studies[i]), mask = masked(i);
     onFront += keptFront(i).length;
-    total += feasibleRows(study).length;
-    all += feasibleRows(study).filter((row) => inRanges(i, row)).length;
+    total += rows.length;
+    all += rows.filter((row) => mask[row]).length;
   }
   note.textContent = `Within the conditions: ${onFront} designs on the front, ${all} of ${total} feasible trials on this page. ${words} `;
   note.append(buttonOf("Drop all conditions", clearConditions, { id: "clear-ranges" }));

@@ -23,8 +23,11 @@ function lazily(id, render) {
   return again;
 }
 
+let printing = false;
+for (const event of ["beforeprint", "afterprint"]) window.addEventListener(event, () => { printing = event === "beforeprint"; });
+
 // A page is printed with more dots per inch than a screen has.
-function paperScale() { return matchMedia("print").matches ? 3 : null; }
+function paperScale() { return printing || matchMedia("print").matches ? 3 : null; }
 
 function describe(node, words) {
   node.setAttribute("role", "img");

@@ -122,7 +122,7 @@ function moveToStudy(step) {
 
 function filtered() { return Object.keys(state.ranges).length > 0 || state.withoutMotors.size > 0; }
 
-function inRanges(study, row) { return !filtered() || masked(study)[row] === 1; }
+function inRanges(study, row) { return masked(study)[row] === 1; }
 
 function meets(study, row) { return state.visible.has(study) && inRanges(study, row); }
 
