@@ -21,8 +21,7 @@ const FONT = { family: "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, 
 
 // The line, areas, bars and few marks of a layer as traces.
 function tracesOf(layer) {
-  const { line, marker, mode, name } = layer, kept = mode.includes("lines") && layer.x.length > CROWD ? thinned(layer) : null;
-  const [x, y] = kept ? [layer.x, layer.y].map((list) => kept.map((i) => list[i])) : [layer.x, layer.y];
+  const { line, marker, mode, name, x, y } = layer;
   const common = { x, y, name, type: "scatter", hoverinfo: "skip", showlegend: false, cliponaxis: false };
   if (mode === "area") return [{ ...common, y, mode: "lines", line: { width: 0, color: layer.fill } }, { ...common, y: layer.y2, mode: "lines", line: { width: 0, color: layer.fill }, fill: "tonexty", fillcolor: faded(layer.fill, 0.2) }];
   if (mode === "bars") {
@@ -60,16 +59,6 @@ function react(node, traces, layout, config) {
   Plotly.react(node, traces, layout, config);
   const bar = node.querySelector(".modebar-container");
   if (bar) node.before(bar);
-}
-
-// The points of a line that move it by half a pixel, and its ends.
-function thinned({ px, py }) {
-  let last = 0;
-  return [...px.keys()].filter((i) => {
-    const near = i > 0 && i < px.length - 1 && Math.abs(px[i] - px[last]) + Math.abs(py[i] - py[last]) < 1 / 2;
-    if (!near) last = i;
-    return !near;
-  });
 }
 
 function each(list, change) { return Array.isArray(list) ? list.map(change) : change(list); }

@@ -217,14 +217,8 @@ function nearestLine(x, y) {
 }
 
 function startParallel() {
-  par.canvas = make("canvas", { role: "img", "aria-label": "Parallel coordinates: one line per design across its variables and measures" });
-  par.svg = draw("svg", { "aria-hidden": "true" });
-  par.pointed = draw("path", { stroke: "var(--ink)", "stroke-width": 2 });
-  par.selected = draw("svg", { "aria-hidden": "true", fill: "none", "pointer-events": "none" },
-    draw("path", { stroke: "var(--card)", "stroke-width": 6 }), draw("path", { stroke: "var(--select)", "stroke-width": 3, id: "parallel-selected" }), par.pointed);
-  par.heads = make("div", { class: "heads", role: "group", "aria-label": "Order of the axes" });
-  par.tip = make("div", { class: "tip", hidden: "" });
-  par.node.append(par.canvas, par.selected, par.svg, par.heads, par.tip);
+  [par.canvas, par.selected, par.svg, par.heads, par.tip] = par.node.children;
+  par.pointed = par.selected.lastElementChild;
   buildFields();
   for (const name of new Set([...AXES, ...axisNames()])) byId("parallel-axes").append(switchOf({ "data-parallel": name }, "", titled(name), "parallel", () => axesShown().includes(name), (shown) => setParallel([...axesShown().filter((one) => one !== name), ...(shown ? [name] : [])])));
   listenToAxes();

@@ -23,12 +23,7 @@
 //   shortlisted(study, row)       place on the shortlist, or -1
 //   valueAt, columnOf, knownNames (data.js) and subject() (subject.js): numbers of a trial
 //
-// To change it
-//   select(study, row, byUser), selectCase(study, name), moveAlongFront(steps), moveToStudy(step)
-//   setRange(name, [least, most] or null, final), clearConditions(), showStudy(i, on), showMotor(kit, on), setBest(way)
-//   setAxes({...}), showLayer(key, on), setTable({...}), setParallel(names)
-//   keep(study, row), drop(study, row), setNote(study, row, text)
-//   undo(), redo(), resetState()
+// To change it: the functions under the headings below.
 //
 // To hear of changes: on(event, listener)
 //   "selection" { byUser, other: another study }, "conditions" { final }, "axes", "layers", "shortlist", "table",
