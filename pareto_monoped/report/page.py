@@ -29,7 +29,7 @@ from pareto_monoped.report.card import FLOOR_HEIGHTS_M, HEADLINES_M, MapPlace, P
 from pareto_monoped.report.comparison import compare
 from pareto_monoped.report.context import context_section
 from pareto_monoped.report.exports import read_models
-from pareto_monoped.report.motors import leg_table, motor_tables
+from pareto_monoped.report.motors import leg_table, motor_tables, switches
 from pareto_monoped.report.packing import packed_column, unpacked_column
 from pareto_monoped.report.quantities import COMPARED, LEADING, quantities_of
 from pareto_monoped.report.resimulation import frames_for, resimulate
@@ -43,6 +43,7 @@ from pareto_monoped.report.tables import (
     head,
     importance_tables,
     kind,
+    left_out,
     order,
     provenance_tables,
     published_link,
@@ -107,6 +108,10 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
         found = Places(maps={name: places[place] for name, place in own.items()}, kits=numbers)
         data = [one.data for one in sources]
         cards.append(study_card(source, label, most_rows, found, variables, goals, data))
+    quantities = quantities_of(
+        names_of([source.data for source in sources], [card.robust for card in cards]), variables
+    )
+    shown_as = {quantity.name: quantity for quantity in quantities}
     return Payload(
         version=__version__,
         title=_title(cards),
@@ -125,9 +130,7 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
             published_link_kg_per_m=PUBLISHED_LINK_KG_PER_M,
         ),
         variables=[asdict(variable) for variable in variables],
-        quantities=quantities_of(
-            names_of([source.data for source in sources], [card.robust for card in cards]), variables
-        ),
+        quantities=quantities,
         axes=_axes(cards),
         published=[
             {
@@ -143,6 +146,7 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
         maps=maps,
         kits=list(kits.values()),
         studies=cards,
+        switches=[switches(card, gearboxes, shown_as[cards[0].objectives[0]]) for card in cards],
         comparison=compare([source.data for source in sources], labels, HEADLINES_M) if len(sources) > 1 else None,
     )
 
@@ -254,6 +258,7 @@ def page(payload: Payload) -> str:
         designs=designs_table(payload),
         importances=importance_tables(payload),
         published_link=published_link(payload),
+        left_out=left_out(payload),
         cases=cases_table(payload),
         context=context_section(payload),
         provenance=provenance_tables(payload),

@@ -40,6 +40,11 @@ function tracesOf(layer) {
 
 function toolOf(title, icon, click) { return { name: title, title, icon: Plotly.Icons[icon], click }; }
 
+// A file with what plotly shows, and with more of its layout.
+function pictureOf(node, format, filename, more) {
+  return Plotly.downloadImage({ data: node.data, layout: { ...node.layout, ...more } }, { format, filename, width: node.layout.width, height: node.layout.height, scale: format === "png" ? 2 : 1 });
+}
+
 function configOf(picture, tools, scrollZoom) {
   const pictures = [toolOf("Picture as PNG", "camera", () => picture("png")), toolOf("Picture as SVG", "disk", () => picture("svg"))];
   return { displaylogo: false, responsive: false, scrollZoom, doubleClick: false, displayModeBar: true, showTips: false, modeBarButtons: [...(tools.length ? [tools] : []), pictures] };
@@ -162,9 +167,8 @@ class Chart {
 
   // What lies over and under plotly's lines becomes images and annotations of theirs.
   picture(format) {
-    const [width, height] = this.box.all, { data, layout } = this.node;
     const images = this.sheets.map(({ firstChild }, k) => ({ ...imageOf(firstChild), layer: ["below", "above"][k] }));
-    return Plotly.downloadImage({ data, layout: { ...layout, images, annotations: this.annotations() } }, { format, width, height, scale: format === "png" ? 2 : 1, filename: "chart" });
+    return pictureOf(this.node, format, "chart", { images, annotations: this.annotations() });
   }
 
   // Crowds of marks: clouds under the lines, marks of a front over them, and names over all.

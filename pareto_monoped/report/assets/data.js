@@ -8,11 +8,7 @@ function finite(value) { return Number.isFinite(value) ? value : null; }
 const unpacked = new Map();
 
 // All values of a measure or variable of a study, one per trial; NaN where there is none.
-function columnOf(study, name) {
-  const key = `${study} ${name}`;
-  if (!unpacked.has(key)) unpacked.set(key, madeColumn(page.studies[study], name));
-  return unpacked.get(key);
-}
+function columnOf(study, name) { return once(unpacked, `${study} ${name}`, () => madeColumn(page.studies[study], name)); }
 
 function madeColumn({ trials: { columns, packed, trial }, robust }, name) {
   if (columns[name]) return ArrayBuffer.isView(columns[name]) ? columns[name] : Float32Array.from(columns[name], (value) => value ?? NaN);

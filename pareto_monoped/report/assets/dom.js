@@ -25,6 +25,12 @@ function bytesOf(base64) {
 
 function inflated(bytes) { return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer(); }
 
+// What a map has under a key; it is found when it is first asked for.
+function once(map, key, find) {
+  if (!map.has(key)) map.set(key, find());
+  return map.get(key);
+}
+
 // Lets the browser paint and listen between two long steps.
 function nextTask() { return new Promise((done) => setTimeout(done)); }
 
@@ -64,10 +70,7 @@ function text(x, y, content, anchor = "start", kind = "") {
 const tints = new Map();
 
 // A colour of the style sheet; kept until the scheme changes, because asking for it makes the browser lay out the page.
-function colour(name) {
-  if (!tints.has(name)) tints.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
-  return tints.get(name);
-}
+function colour(name) { return once(tints, name, () => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim()); }
 
 function studyColour(index) { return colour(`c${index % 6}`); }
 

@@ -7,7 +7,7 @@ const MOST_OF_FRONT = 260, MOST_OTHERS = 260;
 const LINE_PX = 8; // a pointer this near to a line means it
 const AXIS_PX = 76; // the least room of an axis and its name
 const SOFT_SHARE = 1e-3; // of the top of an axis with zeros: below it the axis is linear
-const par = { node: byId("parallel-chart"), top: 46, bottom: 24, left: 52, right: 62, names: [], xs: [], scales: {}, front: [], others: [], moving: null };
+const par = { node: byId("parallel-chart"), top: 46, bottom: 24, left: 52, right: 62, names: [], xs: [], scales: new Map(), front: [], others: [], moving: null };
 
 // The axes from left to right; while one is dragged, as they would then be.
 function axesShown() { return par.moving ?? state.parallel ?? AXES; }
@@ -23,14 +23,13 @@ function valueAtY(name, y) {
 
 // An axis from bound to bound, or over all feasible trials; logarithmic where most of it would be empty.
 function axisScale(name) {
-  if (!par.scales[name]) {
+  return once(par.scales, name, () => {
     const values = page.studies.flatMap((study, i) => { const column = columnOf(i, name); return feasibleRows(study).map((row) => column[row]); });
     const ends = page.studies.flatMap((s) => s.bounds[name] ?? []);
     const [low, high] = extent(ends.length ? ends : values);
     const kind = low === high ? "linear" : kindFor([...values, low, high]);
-    par.scales[name] = scaleOf(low === high ? padded([low, high]) : [low, high], kind, high * SOFT_SHARE);
-  }
-  return par.scales[name];
+    return scaleOf(low === high ? padded([low, high]) : [low, high], kind, high * SOFT_SHARE);
+  });
 }
 
 function thinnedTo(list, most) {

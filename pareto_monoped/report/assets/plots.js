@@ -12,7 +12,7 @@ function lazily(id, render) {
   charts.push(again);
   new IntersectionObserver((entries) => {
     near = entries.at(-1).isIntersecting;
-    if (near && stale) now();
+    if (near) setTimeout(() => { if (stale) now(); }); // each chart in a task of its own
   }, { rootMargin: "300px" }).observe(node);
   new ResizeObserver(() => {
     const before = width;

@@ -32,10 +32,7 @@ function subplots(node, cells, { columns = 1, height = 130, key = null }) {
   const same = key !== null && node.key === key;
   Object.assign(node, { cells, key });
   if (!same) {
-    node.config ??= configOf((format) => {
-      const images = [...node.querySelectorAll(".sheet")].map(imageOf);
-      Plotly.downloadImage({ data: node.data, layout: { ...node.layout, images } }, { format, width: node.clientWidth, height: node.clientHeight, scale: format === "png" ? 2 : 1, filename: "charts" });
-    }, [], false);
+    node.config ??= configOf((format) => pictureOf(node, format, "charts", { images: [...node.querySelectorAll(".sheet")].map(imageOf) }), [], false);
     react(node, traces, layout, node.config);
     node.querySelectorAll(".sheet").forEach((sheet) => sheet.remove());
     if (cells.some(({ series }) => series.some((one) => one.mark))) node.append(...places.map(({ left, top, w, h }) => make("canvas", { class: "sheet above", "aria-hidden": "true", style: `left: ${left}px; top: ${top}px; width: ${w}px; height: ${h}px` })));
