@@ -87,7 +87,7 @@ function startSwitches() {
     if (there[key] ?? true) follows(input, "layers", () => state.layers[key], (shown) => showLayer(key, shown));
     else input.closest("label").remove();
   }
-  box.hidden = false;
+  box.hidden = byId("axes").hidden = false;
   if (page.studies.length < 2) return;
   page.studies.forEach((study, i) => {
     const symbol = draw("svg", { width: 14, height: 14, "aria-hidden": "true" }, markOf(MARKS[i % 6], 7, 7, `var(--c${i % 6})`));
