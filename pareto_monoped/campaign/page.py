@@ -33,7 +33,7 @@ from pareto_monoped.campaign.results import (
 )
 from pareto_monoped.files import write_text
 from pareto_monoped.measures import Measure, measure
-from pareto_monoped.report.page import asset, deflated, embedded_json, plotly, policy
+from pareto_monoped.report.page import asset, closed, deflated, in_ascii, plotly, policy
 from pareto_monoped.report.quantities import label_of, quantities_of
 from pareto_monoped.report.tables import safe
 
@@ -216,9 +216,8 @@ def write_results(
 def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
     """Return the whole HTML text."""
     sections = sections_of(results, campaign.axes)
-    own = "\n".join([*(asset(f"{name}.js") for name in SCRIPTS), _own("campaign.js")])
-    script = f"(async () => {{\n'use strict';\n{own}\n}})();\n"
-    return Template(_own("campaign.html")).substitute(
+    script = closed(*(asset(f"{name}.js") for name in SCRIPTS), _own("campaign.js"))
+    text = Template(_own("campaign.html")).substitute(
         policy=policy(plotly(), script),
         title=safe(campaign.name),
         style=asset("style.css") + asset("print.css") + _own("campaign.css"),
@@ -229,10 +228,11 @@ def campaign_page(campaign: Campaign, results: Sequence[Result]) -> str:
         sections="\n".join(_section(section, k, len(sections)) for k, section in enumerate(sections)),
         studies=studies_table(campaign, results),
         version=safe(__version__),
-        payload=deflated(embedded_json(_payload(sections))),
+        payload=deflated(_payload(sections)),
         plotly=plotly(),
         script=script,
     )
+    return in_ascii(text)
 
 
 def _own(name: str) -> str:

@@ -1,5 +1,6 @@
 """What the page shows of a motor: its stage 1 map, its gearboxes, and the leg that fits it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,7 @@ from pareto_monoped.leg.shank import shank_parts
 from pareto_monoped.leg.thigh import thigh_parts
 from pareto_monoped.leg.thigh_outline import outer_hip_radius_mm
 from pareto_monoped.report.packing import column
-from pareto_monoped.report.schema import Gearbox, LegTable, MapPoint, MotorMap
+from pareto_monoped.report.schema import Gearbox, LegTable, MapPoint, MotorMap, Quantity, StudyCard
 
 if TYPE_CHECKING:
     from pareto_monoped.actuator.actuator import Actuator
@@ -110,3 +111,32 @@ def _gearbox(actuator: "Actuator") -> Gearbox:
         efficiency=round(actuator.efficiency, 4),
         motor_diameter_mm=body.outer_diameter_mm if body is not None else 0.0,
     )
+
+
+_MOST_NAMED = 3  # changes that are told one by one: more are counted; our own choice
+
+
+def switches(card: StudyCard, gearboxes: Sequence[Gearbox], first: Quantity) -> str:
+    """Return where along a front the joints change the family of their gearbox, by its first objective."""
+    if len(card.front) < 2:
+        return ""
+    columns = card.trials.columns
+    firsts = [columns[first.name][row] for row in card.front]
+    parts = []
+    for joint in ("hip", "knee"):
+        numbers = [columns[f"{joint}_gearbox"][row] for row in card.front]
+        families = ["" if n is None or n < 0 else gearboxes[int(n)].family for n in numbers]
+        at = [
+            f"{first.scale * (value or 0.0):.2f} {first.unit}"
+            for value, family, before in zip(firsts[1:], families[1:], families, strict=False)
+            if family != before
+        ]
+        external = families.count("ESSPG")
+        if external in (0, len(families)):
+            parts.append(f"the {joint} stays with {'ESSPG' if external else 'ISSPG'}")
+        elif len(at) <= _MOST_NAMED:
+            parts.append(f"the {joint} changes at {', '.join(at)}")
+        else:
+            share = f"{external} of {len(families)} designs"
+            parts.append(f"the {joint} has ESSPG in {share}, changing {len(at)} times between {at[0]} and {at[-1]}")
+    return f" Along this front {'; '.join(parts)}."

@@ -2,7 +2,7 @@
 
 A jump is small enough that a page can hold one for every design of its fronts. Each of its columns is rounded to whole
 counts. The changes from moment to moment, small numbers that often repeat, are deflated (RFC 1951) all together.
-``assets/jumps.js`` reads them; ``unpacked`` does the same.
+``assets/jumps.js`` reads them as ``page.embedded`` hands them on; ``unpacked`` does the same.
 """
 
 import base64

@@ -3,6 +3,7 @@
 import base64
 import hashlib
 import json
+import re
 import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, is_dataclass
@@ -28,12 +29,12 @@ from pareto_monoped.report.card import FLOOR_HEIGHTS_M, HEADLINES_M, MapPlace, P
 from pareto_monoped.report.comparison import compare
 from pareto_monoped.report.context import context_section
 from pareto_monoped.report.exports import read_models
-from pareto_monoped.report.motors import leg_table, motor_tables
+from pareto_monoped.report.motors import leg_table, motor_tables, switches
 from pareto_monoped.report.packing import packed_column, unpacked_column
 from pareto_monoped.report.quantities import COMPARED, LEADING, quantities_of
 from pareto_monoped.report.resimulation import frames_for, resimulate
 from pareto_monoped.report.robust import names_of
-from pareto_monoped.report.schema import Constants, Gearbox, Kit, MotorMap, Payload, StudyCard, Trials
+from pareto_monoped.report.schema import Constants, Gearbox, Jumps, Kit, MotorMap, Payload, Robust, StudyCard, Trials
 from pareto_monoped.report.tables import (
     ask_fields,
     cases_table,
@@ -42,6 +43,7 @@ from pareto_monoped.report.tables import (
     head,
     importance_tables,
     kind,
+    left_out,
     order,
     provenance_tables,
     published_link,
@@ -106,6 +108,10 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
         found = Places(maps={name: places[place] for name, place in own.items()}, kits=numbers)
         data = [one.data for one in sources]
         cards.append(study_card(source, label, most_rows, found, variables, goals, data))
+    quantities = quantities_of(
+        names_of([source.data for source in sources], [card.robust for card in cards]), variables
+    )
+    shown_as = {quantity.name: quantity for quantity in quantities}
     return Payload(
         version=__version__,
         title=_title(cards),
@@ -124,9 +130,7 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
             published_link_kg_per_m=PUBLISHED_LINK_KG_PER_M,
         ),
         variables=[asdict(variable) for variable in variables],
-        quantities=quantities_of(
-            names_of([source.data for source in sources], [card.robust for card in cards]), variables
-        ),
+        quantities=quantities,
         axes=_axes(cards),
         published=[
             {
@@ -142,6 +146,7 @@ def build(sources: Sequence[Source], literal: Sequence[Mapping[str, Any]] = ()) 
         maps=maps,
         kits=list(kits.values()),
         studies=cards,
+        switches=[switches(card, gearboxes, shown_as[cards[0].objectives[0]]) for card in cards],
         comparison=compare([source.data for source in sources], labels, HEADLINES_M) if len(sources) > 1 else None,
     )
 
@@ -240,8 +245,8 @@ def literal_cases() -> tuple[dict[str, float | None], ...]:
 
 def page(payload: Payload) -> str:
     """Return the whole HTML text."""
-    script = "(async () => {\n'use strict';\n" + "\n".join(asset(f"{name}.js") for name in SCRIPTS) + "\n})();\n"
-    return Template(asset("page.html")).substitute(
+    script = closed(*(asset(f"{name}.js") for name in SCRIPTS))
+    text = Template(asset("page.html")).substitute(
         policy=policy(plotly(), script),
         title=safe(payload.title),
         style="".join(asset(f"{name}.css") for name in STYLES),
@@ -253,38 +258,71 @@ def page(payload: Payload) -> str:
         designs=designs_table(payload),
         importances=importance_tables(payload),
         published_link=published_link(payload),
+        left_out=left_out(payload),
         cases=cases_table(payload),
         context=context_section(payload),
         provenance=provenance_tables(payload),
         version=safe(payload.version),
-        payload=deflated(embedded_json(payload)),
+        payload=deflated(payload),
         plotly=plotly(),
         script=script,
     )
+    return in_ascii(text)
 
 
-def embedded_json(values: Any) -> str:
-    """Return a page's content as JSON."""
-    return json.dumps(values, default=_plain, allow_nan=False, separators=(",", ":"))
+def closed(*scripts: str) -> str:
+    """Return scripts as one closed scope."""
+    return _escaped("(async () => {\n'use strict';\n" + "\n".join(scripts) + "\n})();\n")
 
 
-def deflated(text: str) -> str:
-    """Return a text deflated and in base64: such letters can neither end a script element nor begin a comment."""
-    return base64.b64encode(zlib.compress(text.encode("utf-8"), 9)).decode("ascii")
+def _escaped(script: str) -> str:
+    return re.sub(r"[^\x00-\x7f]+", lambda letters: json.dumps(letters[0])[1:-1], script)
 
 
-def _plain(value: Any) -> Any:
-    if is_dataclass(value) and not isinstance(value, type):
+def in_ascii(text: str) -> str:
+    """Return a page with references for letters beyond ASCII: a browser then keeps the whole in a byte per letter."""
+    return text.encode("ascii", "xmlcharrefreplace").decode("ascii")
+
+
+def deflated(content: Any) -> str:
+    """Return a page's content as text that can neither end a script element nor begin a comment.
+
+    First stands how many bytes of numbers there are. These and the rest in JSON follow, deflated and in base64.
+    """
+    numbers, text = embedded(content)
+    return f"{len(numbers)} {base64.b64encode(zlib.compress(numbers + text.encode(), 9)).decode('ascii')}"
+
+
+def embedded(content: Any) -> tuple[bytes, str]:
+    """Return columns and jumps one after another as a browser reads them, and the rest as JSON with their places."""
+    numbers = bytearray()
+
+    def placed(raw: bytes, size: int = 4) -> dict[str, int]:
+        place = {"at": len(numbers), "count": len(raw) // size}
+        numbers.extend(raw + bytes(-len(raw) % 4))
+        return place
+
+    def plain(value: Any) -> Any:
+        if not is_dataclass(value) or isinstance(value, type):
+            raise TypeError(f"{type(value).__name__} does not belong on the page")
         fields = {name: getattr(value, name) for name in value.__dataclass_fields__}
+        if isinstance(value, (Trials, Robust)):
+            fields["packed"] = {name: placed(base64.b64decode(text)) for name, text in value.packed.items()}
         if isinstance(value, Trials):
-            # Shorter than numbers in words; whole numbers, such as those of gearboxes, stay as they are.
-            numbers = {name: any(isinstance(one, float) for one in column) for name, column in value.columns.items()}
+            # Whole numbers, such as those of gearboxes, stay as they are.
+            numbered = {name for name, column in value.columns.items() if any(isinstance(one, float) for one in column)}
             fields["columns"] = {
-                name: packed_column(np.array(column, dtype=np.float64)) if numbers[name] else column
+                name: placed(base64.b64decode(packed_column(np.array(column, dtype=np.float64))))
+                if name in numbered
+                else column
                 for name, column in value.columns.items()
             }
+        if isinstance(value, Jumps):
+            fields["data"] = placed(zlib.decompress(base64.b64decode(value.data)), size=2)
         return fields
-    raise TypeError(f"{type(value).__name__} does not belong on the page")
+
+    text = json.dumps(content, default=plain, allow_nan=False, separators=(",", ":"))
+    return bytes(numbers), text
 
 
 PLOTLY = "plotly-basic-4.1.1.min.js"
@@ -295,8 +333,14 @@ PLOTLY_SHA256 = "99784e3abfb07b142a15e521a439e6d9addceadb3f79553fd24c72774f0649b
 
 @lru_cache(maxsize=1)
 def plotly() -> str:
-    """Return the text of the charts' library."""
-    return (resources.files("pareto_monoped.report") / "plotly" / PLOTLY).read_text(encoding="utf-8")
+    """Return the charts' library as a function ``makePlotly``, which sets it up: a browser may pause in between.
+
+    The file hands that function to another one, so that a browser reads all of it twice: first for its end only. In
+    parentheses it is read once.
+    """
+    text = (resources.files("pareto_monoped.report") / "plotly" / PLOTLY).read_text(encoding="utf-8")
+    start, _, function = text.partition(", () => {")
+    return _escaped(f"{start.partition('*/')[0]}*/\nconst makePlotly = (() => {{{function.removesuffix('}));')}}});\n")
 
 
 def policy(*scripts: str) -> str:

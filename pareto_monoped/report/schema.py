@@ -141,7 +141,7 @@ class Robust:
     others: int  #: how many were simulated under other ranges, samples or seed, and are left out
     rows: Sequence[int]  #: of ``Trials``, in the order of their numbers
     front: Sequence[int]  #: rows of the robust front, by the first objective
-    #: Columns such as "height_m.p05" and "failed_share" of ``rows``, as text that a browser reads (``packing.packed``)
+    #: Columns such as "height_m.p05" and "failed_share" of ``rows``, as text (``packing.packed_column``)
     packed: Mapping[str, str]
 
 
@@ -187,7 +187,7 @@ class Trials:
     trial: Sequence[int]  #: numbers
     state: str  #: one letter per row: f feasible, i infeasible, x failed
     columns: Mapping[str, Column]  #: by name; None where there is no value
-    packed: Mapping[str, str]  #: more columns by name, as text that a browser reads (``packing.packed``)
+    packed: Mapping[str, str]  #: more columns by name, as text (``packing.packed_column``)
     total: int  #: trials in the database, which may be more than there are rows
 
 
@@ -326,4 +326,5 @@ class Payload:
     maps: Sequence[MotorMap]
     kits: Sequence[Kit]
     studies: Sequence[StudyCard]
+    switches: Sequence[str]  #: of each study, where along its front the joints change the family of their gearbox
     comparison: Comparison | None = field(default=None)

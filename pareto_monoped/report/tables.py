@@ -138,6 +138,13 @@ def _case_name(name: str) -> str:
     return name if name == "nominal" else f"Case {name}"
 
 
+def left_out(payload: Payload) -> str:
+    """Return how many trials the page lacks."""
+    left = sum(card.trials.total - len(card.trials.trial) for card in payload.studies)
+    words = f"{left} dominated trials are left out of this page to keep it small; every count includes them."
+    return words if left else ""
+
+
 def published_link(payload: Payload) -> str:
     """Return the mass of the published link over its length in mm."""
     line = payload.constants

@@ -38,5 +38,5 @@ def made_campaign(folder, axes, front_of, head=None):
 
 def content_of(page):
     """What the charts of a page are drawn from."""
-    text = re.search(r'id="payload">(.*?)</script>', page, re.S)[1]
-    return json.loads(zlib.decompress(base64.b64decode(text)))
+    length, text = re.search(r'id="payload">(\d+) (.*?)</script>', page, re.S).groups()
+    return json.loads(zlib.decompress(base64.b64decode(text))[int(length) :])

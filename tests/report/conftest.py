@@ -160,7 +160,7 @@ class Tab:
         self.requests.clear()
         self.page.goto(file.as_uri() + fragment)
         self.page.wait_for_function("() => document.getElementById('front-chart').layers !== undefined")
-        self.page.wait_for_selector("#parallel-chart canvas")
+        self.page.wait_for_selector("#table.live")
         self.page.evaluate("document.querySelector('.fold').open = true")
 
     def look(self, width: int = 1440, height: int = 900, scheme: str = "light") -> None:

@@ -15,7 +15,7 @@ from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.pareto.selectors import Condition
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.exports import model_of
-from pareto_monoped.report.page import build, embedded_json, page, payload_of
+from pareto_monoped.report.page import build, embedded, page, payload_of
 from tests.report.conftest import cut, grown
 
 pytestmark = pytest.mark.browser
@@ -340,7 +340,7 @@ def test_several_studies_lie_over_each_other_and_can_be_switched(seeds, weighted
             "document.getElementById('front-chart').layers.filter((t) => t.name === 'front').length"
         )
 
-    made = json.loads(embedded_json(content))
+    made = json.loads(embedded(content)[1])
     labels = [card["label"] for card in made["studies"]]
     first = made["studies"][0]
     assert f"Trial {first['trials']['trial'][first['picks'][0]['row']]}, {labels[0]}" in tab.text("#subject")

@@ -205,3 +205,57 @@ def test_designs_under_uncertainty_have_bars_and_a_front_of_their_bad_ends(robus
     tab.page.select_option("#colour", "overloaded_share")
     assert "overload" in tab.text("#ramp")
     tab.quiet(robust.file)
+
+
+def test_a_picture_holds_the_marks_and_names_that_lie_over_the_lines(tab):
+    tab.to_front()
+    made = tab.page.evaluate(
+        """async () => {
+            const kept = Plotly.downloadImage, box = document.getElementById("front-chart").parentElement;
+            let made = null;
+            Plotly.downloadImage = ({ layout }) => { made = layout; };
+            box.querySelector('[data-title="Picture as PNG"]').click();
+            Plotly.downloadImage = kept;
+            const painted = async ({ source }) => {
+                const image = new Image(), canvas = document.createElement("canvas");
+                image.src = source;
+                await image.decode();
+                Object.assign(canvas, { width: image.width, height: image.height });
+                const context = canvas.getContext("2d");
+                context.drawImage(image, 0, 0);
+                const { data } = context.getImageData(0, 0, image.width, image.height);
+                return data.filter((value, i) => i % 4 === 3 && value > 0).length;
+            };
+            const images = await Promise.all(made.images.map(painted));
+            const names = made.annotations.map(({ text }) => text);
+            return { layers: made.images.map(({ layer }) => layer), images, names };
+        }"""
+    )
+    assert made["layers"] == ["below", "above"]
+    assert (
+        made["images"][0] > 100
+    )  # a cloud of dominated designs; so few designs are on the front that they are no crowd
+    shown = tab.page.eval_on_selector_all("#front-chart .name", "(all) => all.map((one) => one.textContent)")
+    assert "knee" in shown
+    assert made["names"] == shown
+
+
+def test_marks_and_names_go_along_while_the_chart_is_moved(tab):
+    tab.to_front()
+    tab.page.click('.framed:has(#front-chart) [data-title="Pan"]')
+    box = tab.page.locator("#front-chart .sheet.below").bounding_box()
+    middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    before = tab.page.locator("#front-chart .name").first.bounding_box()
+    tab.page.mouse.move(*middle)
+    tab.page.mouse.down()
+    tab.page.mouse.move(middle[0] + 40, middle[1] + 25, steps=4)
+    tab.page.wait_for_timeout(100)
+    names = tab.page.locator("#front-chart .name").first.bounding_box()
+    clouds = tab.page.locator("#front-chart .sheet.below canvas").bounding_box()
+    tab.page.mouse.up()
+    assert (names["x"] - before["x"], names["y"] - before["y"]) == pytest.approx((40, 25), abs=1.5)
+    assert (clouds["x"] - box["x"], clouds["y"] - box["y"]) == pytest.approx((40, 25), abs=1.5)
+    # At rest all of it is painted anew, where it then belongs.
+    tab.page.wait_for_timeout(400)
+    clouds = tab.page.locator("#front-chart .sheet.below canvas").bounding_box()
+    assert (clouds["x"], clouds["y"]) == pytest.approx((box["x"], box["y"]), abs=0.5)

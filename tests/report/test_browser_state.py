@@ -106,7 +106,7 @@ def test_a_link_brings_the_same_view_back(tab, file, card, limits, open_tab):
     assert again.page.is_checked("[data-show=infeasible]")
     assert float(again.page.input_value("#ask-height")) == pytest.approx(limits.height, rel=1e-5)
     again.page.reload()
-    again.page.wait_for_selector("#parallel-chart canvas")
+    again.page.wait_for_selector("#table.live")
     assert again.page.evaluate("location.hash") == fragment
     assert trial_shown(again) == trial_shown(tab)
     # A link opened in the same tab does the same.

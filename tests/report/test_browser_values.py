@@ -440,7 +440,8 @@ def test_points_along_the_front_are_its_designs(tab, mixed):
         assert points["y"] == pytest.approx([scales[name] * columns[name][row] for row in card.front])
         gearbox = columns.get(name.replace("_ratio", "_gearbox")) if name.endswith("_ratio") else None
         external = [gearbox is not None and payload.gearboxes[gearbox[row]].family == "ESSPG" for row in card.front]
-        assert [mark == "diamond" for mark in points["mark"]] == external
+        marks = points["mark"] if isinstance(points["mark"], list) else [points["mark"]] * len(card.front)
+        assert [mark == "diamond" for mark in marks] == external
         assert all(float(place.removesuffix("px")) > 0 for place in ring)
 
 

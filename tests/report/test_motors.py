@@ -1,10 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.leg.dimensions import leg_dimensions
-from pareto_monoped.report.motors import gearbox_numbers, leg_table, motor_tables
+from pareto_monoped.report.motors import gearbox_numbers, leg_table, motor_tables, switches
 from pareto_monoped.report.page import build
 from pareto_monoped.robot.build import build_robot
 from pareto_monoped.robot.population import robot_arrays
@@ -78,3 +80,21 @@ def test_the_drawing_has_the_parts_dimensions(vt8020):
     assert leg.thigh_half_width_m == pytest.approx(0.024)
     assert (leg.shank_knee_radius_m, leg.shank_foot_radius_m) == pytest.approx((0.024, 0.018))
     assert (leg.housing_radius_m, leg.output_radius_m) == pytest.approx((0.0515, 0.0165))
+
+
+def test_changes_of_the_family_along_a_front_are_told_one_by_one_or_counted(payload):
+    """Written by hand: of five designs the third begins with an external hip; the knee goes to and fro."""
+    (card,) = payload.studies
+    inside, outside = (next(g for g in payload.gearboxes if g.family == one) for one in ("ISSPG", "ESSPG"))
+    columns = {"height_m": [0.9, 0.5, 0.6, 0.7, 0.8], "hip_gearbox": [1, 0, 0, 1, 1], "knee_gearbox": [0, 0, 1, 0, 1]}
+    made = replace(card, front=[1, 2, 3, 4, 0], trials=replace(card.trials, columns=columns))
+    height = next(quantity for quantity in payload.quantities if quantity.name == "height_m")
+    assert switches(made, [inside, outside], height) == (
+        " Along this front the hip changes at 0.70 m; "
+        "the knee has ESSPG in 2 of 5 designs, changing 4 times between 0.60 m and 0.90 m."
+    )
+    assert (
+        switches(made, [outside, outside], height)
+        == " Along this front the hip stays with ESSPG; the knee stays with ESSPG."
+    )
+    assert switches(replace(made, front=[1]), [inside, outside], height) == ""

@@ -12,7 +12,7 @@ from pareto_monoped.design import NAMES
 from pareto_monoped.jump.frames import FRAME_COLUMNS
 from pareto_monoped.measures import AUDIT_MEASURES, GOAL_NAMES, SCREEN_MEASURES
 from pareto_monoped.report import schema
-from pareto_monoped.report.page import embedded_json, page
+from pareto_monoped.report.page import embedded, page
 from pareto_monoped.report.schema import Payload
 
 TABLES = {*NAMES, *GOAL_NAMES, *(one.name for one in (*AUDIT_MEASURES, *SCREEN_MEASURES))}
@@ -64,7 +64,7 @@ def test_the_scripts_read_only_what_the_payload_has():
 
 
 def test_every_name_in_the_payload_stands_in_a_table(payload):
-    read = json.loads(embedded_json(payload))
+    read = json.loads(embedded(payload)[1])
     (card,) = read["studies"]
     for names in (read["goals"], read["leading"], read["compared"], read["energies"], read["axes"]):
         assert set(names) <= TABLES

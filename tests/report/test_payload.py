@@ -1,6 +1,8 @@
 import base64
 import json
+import math
 import re
+import struct
 import zlib
 from dataclasses import replace
 from pathlib import Path
@@ -17,8 +19,9 @@ from pareto_monoped.report import page as page_module
 from pareto_monoped.report import trials as trials_module
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.packing import unpacked
-from pareto_monoped.report.page import build, deflated, embedded_json
+from pareto_monoped.report.page import build, deflated
 from pareto_monoped.robot.build import build_robot
+from tests.report import conftest
 from tests.report.conftest import cut, grown
 
 
@@ -103,13 +106,36 @@ def test_same_names_get_labels_that_differ(source):
     assert all("small" in label for label in labels)
 
 
-def test_embedded_json_reads_back_and_holds_no_markup(data, resimulation):
+def test_what_is_embedded_reads_back_and_holds_no_markup(data, resimulation):
     nasty = "</script><script>alert(1)</script><!-- \u2028"
     study = replace(data.study, name=nasty)
     payload = build([Source(data=replace(data, study=study), resimulation=resimulation, models={})])
-    text = deflated(embedded_json(payload))
-    assert re.fullmatch(r"[A-Za-z0-9+/=]+", text)
-    assert json.loads(zlib.decompress(base64.b64decode(text)))["studies"][0]["name"] == nasty
+    text = deflated(payload)
+    assert re.fullmatch(r"\d+ [A-Za-z0-9+/=]+", text)
+    length, letters = text.split(" ")
+    content = zlib.decompress(base64.b64decode(letters))
+    (read,) = json.loads(content[int(length) :])["studies"]
+    assert read["name"] == nasty
+    # Every number stands where the rest says, in four bytes, or in two for a jump.
+    (card,) = payload.studies
+    for name, values in card.trials.columns.items():
+        place = read["trials"]["columns"][name]
+        if isinstance(place, list):
+            assert place == list(values)
+            continue
+        expected = [math.nan if value is None else value for value in values]
+        found = struct.unpack_from(f"<{place['count']}f", content, place["at"])
+        assert found == pytest.approx(expected, rel=1e-6, nan_ok=True), name
+    for name, packed in card.trials.packed.items():
+        place = read["trials"]["packed"][name]
+        found = struct.unpack_from(f"<{place['count']}f", content, place["at"])
+        assert found == pytest.approx(conftest.unpacked(packed), nan_ok=True), name
+    place, names = read["jumps"]["data"], list(card.jumps.counts)
+    for at, trial in enumerate(card.jumps.keys):
+        changes = np.frombuffer(content, "<i2", place["count"], place["at"]).reshape(-1, len(names), card.jumps.frames)
+        counts = np.cumsum(changes[at, names.index("base_z_m")])
+        heights_m = unpacked(card.jumps, trial)["base_z_m"]
+        assert card.jumps.counts["base_z_m"] * counts[: len(heights_m)] == pytest.approx(heights_m)
 
 
 @pytest.mark.parametrize("count", [0, 1])

@@ -12,7 +12,7 @@ from pareto_monoped.analysis.robustness import robust, robust_front, robust_tria
 from pareto_monoped.analysis.sensitivity import sensitivity
 from pareto_monoped.measures import ROBUST_NAMES
 from pareto_monoped.report.card import Source
-from pareto_monoped.report.page import build, embedded_json, page
+from pareto_monoped.report.page import build, embedded, page
 from pareto_monoped.report.robust import best_of
 from pareto_monoped.storage.extra_rows import read_limits, read_robustness, read_sensitivity
 from pareto_monoped.storage.reader import read_study
@@ -146,17 +146,18 @@ def test_the_page_has_the_stored_sensitivities(data, resimulation, folder):
 @pytest.mark.browser
 def test_the_scripts_read_the_same_numbers(shown, stored, browser):
     tab = browser.new_page()
+    numbers, text = embedded(shown)
     try:
         column, single, names = tab.evaluate(
-            """([script, text]) => {
-                const page = JSON.parse(text);
-                const bytesOf = (letters) => Uint8Array.from(atob(letters), (letter) => letter.charCodeAt(0));
+            """([script, numbers, text]) => {
+                const page = JSON.parse(text), content = Uint8Array.from(numbers).buffer;
+                const once = (map, key, find) => map.get(key) ?? map.set(key, find()).get(key);
                 const parts = `${script}; return { columnOf, valueAt, knownNames };`;
-                const found = new Function("page", "bytesOf", parts)(page, bytesOf);
+                const found = new Function("page", "content", "once", parts)(page, content, once);
                 const single = page.studies[0].trials.trial.map((_, row) => found.valueAt(0, "height_m.p05", row));
                 return [[...found.columnOf(0, "height_m.p05")], single, found.knownNames()];
             }""",
-            [(ASSETS / "data.js").read_text(encoding="utf-8"), embedded_json(shown)],
+            [(ASSETS / "data.js").read_text(encoding="utf-8"), list(numbers), text],
         )
     finally:
         tab.close()

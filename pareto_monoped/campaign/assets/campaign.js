@@ -46,14 +46,10 @@ function startSection(section, k) {
     for (const redraw of again) redraw();
   };
   for (const box of boxes) box.addEventListener("change", update);
-  const forAll = (words, checked) => {
-    const button = make("button", { type: "button" }, words);
-    button.addEventListener("click", () => {
-      for (const box of boxes) box.checked = checked;
-      update();
-    });
-    return button;
-  };
+  const forAll = (words, checked) => buttonOf(words, () => {
+    for (const box of boxes) box.checked = checked;
+    update();
+  });
   const labels = section.groups.map((group, i) => make("label", {}, boxes[i], group.label));
   byId(`switches-${k}`).append(...labels, ...(labels.length > section.first.length ? [forAll("All", true), forAll("None", false)] : []));
 }

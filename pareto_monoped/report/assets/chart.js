@@ -1,5 +1,5 @@
-// A chart by plotly: axes, lines, few marks, zoom, pan, selections and pictures. Crowds of marks are painted into an
-// image under plotly's lines, so that thousands of them take no elements; hovering and choosing look them up here.
+// A chart by plotly: axes, lines, few marks, zoom, pan, selections and pictures. Crowds of marks are painted on canvases
+// under and over plotly's lines, so that thousands of them take no elements; hovering and choosing look them up here.
 //
 // A layer has name, x and y (values as shown), and by its mode
 //   "markers"  marker { size, symbol, color, opacity, ramp }, each one value or one per point; cloud: many small dots
@@ -7,6 +7,10 @@
 //   "area"     y2 and fill
 //   "bars"     ends [[x low, x high, y low, y high], ...] and line
 // and may have stands (what a point stands for, given to the listener of a click) and text(i) (shown over point i).
+
+await nextTask();
+const Plotly = makePlotly();
+await nextTask();
 
 const charts = [];
 const NEAR_PX = 14; // a click this near to a mark means it
@@ -17,8 +21,7 @@ const FONT = { family: "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, 
 
 // The line, areas, bars and few marks of a layer as traces.
 function tracesOf(layer) {
-  const { line, marker, mode, name } = layer, kept = mode.includes("lines") && layer.x.length > CROWD ? thinned(layer) : null;
-  const [x, y] = kept ? [layer.x, layer.y].map((list) => kept.map((i) => list[i])) : [layer.x, layer.y];
+  const { line, marker, mode, name, x, y } = layer;
   const common = { x, y, name, type: "scatter", hoverinfo: "skip", showlegend: false, cliponaxis: false };
   if (mode === "area") return [{ ...common, y, mode: "lines", line: { width: 0, color: layer.fill } }, { ...common, y: layer.y2, mode: "lines", line: { width: 0, color: layer.fill }, fill: "tonexty", fillcolor: faded(layer.fill, 0.2) }];
   if (mode === "bars") {
@@ -37,28 +40,30 @@ function tracesOf(layer) {
 
 function toolOf(title, icon, click) { return { name: title, title, icon: Plotly.Icons[icon], click }; }
 
+// A file with what plotly shows, and with more of its layout.
+function pictureOf(node, format, filename, more) {
+  return Plotly.downloadImage({ data: node.data, layout: { ...node.layout, ...more } }, { format, filename, width: node.layout.width, height: node.layout.height, scale: format === "png" ? 2 : 1 });
+}
+
 function configOf(picture, tools, scrollZoom) {
   const pictures = [toolOf("Picture as PNG", "camera", () => picture("png")), toolOf("Picture as SVG", "disk", () => picture("svg"))];
   return { displaylogo: false, responsive: false, scrollZoom, doubleClick: false, displayModeBar: true, showTips: false, modeBarButtons: [...(tools.length ? [tools] : []), pictures] };
 }
 
 // Plotly's bar of tools stands beside a chart, because a picture or a slider for a screen reader may hold no buttons.
-function framed(node) {
+function boxed(node) {
   if (node.parentElement.classList.contains("framed")) return;
-  const box = make("div", { class: "framed" }), bar = node.querySelector(".modebar-container");
+  const box = make("div", { class: "framed" });
   node.replaceWith(box);
-  if (bar) box.append(bar);
   box.append(node);
 }
 
-// The points of a line that move it by half a pixel, and its ends.
-function thinned({ px, py }) {
-  let last = 0;
-  return [...px.keys()].filter((i) => {
-    const near = i > 0 && i < px.length - 1 && Math.abs(px[i] - px[last]) + Math.abs(py[i] - py[last]) < 1 / 2;
-    if (!near) last = i;
-    return !near;
-  });
+// Draws anew what has changed.
+function react(node, traces, layout, config) {
+  boxed(node);
+  Plotly.react(node, traces, layout, config);
+  const bar = node.querySelector(".modebar-container");
+  if (bar) node.before(bar);
 }
 
 function each(list, change) { return Array.isArray(list) ? list.map(change) : change(list); }
@@ -69,7 +74,7 @@ function faded(tint, alpha) { return tint + Math.round(255 * alpha).toString(16)
 function axisLook(title, kind, range) {
   return {
     title: { text: plain(title), standoff: 6 }, type: kind, range: kind === "log" ? range.map(Math.log10) : range, gridcolor: colour("grid"), linecolor: colour("line"), mirror: true, showline: true,
-    zeroline: false, tickcolor: colour("line"), color: colour("soft"), automargin: false, nticks: 8, exponentformat: "none", minexponent: 6, ...(kind === "log" ? { dtick: Math.log10(range[1] / range[0]) > 1.3 ? "D2" : undefined } : {}),
+    zeroline: false, tickcolor: colour("line"), color: colour("soft"), automargin: false, tickangle: 0, ticklabeloverflow: "allow", nticks: 8, exponentformat: "none", minexponent: 6, ...(kind === "log" ? { dtick: Math.log10(range[1] / range[0]) > 1.3 ? "D2" : undefined } : {}),
   };
 }
 
@@ -94,8 +99,12 @@ class Chart {
     node.chart = this;
     node.classList.add("plot");
     this.back = draw("svg", { "aria-hidden": "true" });
+    this.words = draw("svg", { "aria-hidden": "true" });
+    this.sheets = ["below", "above"].map((layer) => make("div", { class: `sheet ${layer}`, "aria-hidden": "true" }, make("canvas")));
+    this.sheets[1].append(this.words);
     this.tip = make("div", { class: "tip", hidden: "" });
-    node.replaceChildren(this.back, this.tip);
+    node.replaceChildren(this.back, ...this.sheets, this.tip);
+    boxed(node);
     if (label) describe(node, label);
     this.listen();
   }
@@ -129,18 +138,24 @@ class Chart {
     if (!this.given) return;
     this.measure();
     for (const layer of this.layers) this.place(layer);
-    const { all } = this.box, { l, r, t, b } = this.margin;
     this.hideTip();
-    Plotly.react(this.node, this.layers.flatMap((layer) => (this.space ? [] : tracesOf(layer))), {
+    this.paint();
+    this.drawAxes();
+    this.shown?.();
+    // Plotly's part takes long at first, and then is a task of its own.
+    if (this.followed || paperScale()) this.drawLines();
+    else setTimeout(() => this.drawLines());
+  }
+
+  drawLines() {
+    const { all } = this.box, { l, r, t, b } = this.margin;
+    react(this.node, this.layers.flatMap((layer) => (this.space ? [] : tracesOf(layer))), {
       width: all[0], height: all[1], margin: { l, r, t, b, pad: 0 }, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", font: { ...FONT, color: colour("ink") }, showlegend: false, hovermode: false,
       dragmode: this.space || COARSE ? false : this.mode ?? "zoom", modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("faint"), activecolor: colour("c0"), orientation: "h" },
       xaxis: { ...axisLook(this.given.x.title, this.x.kind, this.x.range), visible: !this.space }, yaxis: { ...axisLook(this.given.y.title, this.y.kind, this.y.range), visible: !this.space },
-      images: this.images(), annotations: this.space ? [] : this.annotations(), newselection: { line: { color: colour("select"), width: 1.5 } },
+      newselection: { line: { color: colour("select"), width: 1.5 } },
     }, this.config());
-    framed(this.node);
     this.follow();
-    this.drawAxes();
-    this.shown?.();
   }
 
   // One object per chart: another one makes plotly begin anew.
@@ -150,30 +165,30 @@ class Chart {
     return this.configs;
   }
 
+  // What lies over and under plotly's lines becomes images and annotations of theirs.
   picture(format) {
-    const [width, height] = this.box.all;
-    return Plotly.downloadImage(this.node, { format, width, height, scale: format === "png" ? 2 : 1, filename: "chart" });
+    const images = this.sheets.map(({ firstChild }, k) => ({ ...imageOf(firstChild), layer: ["below", "above"][k] }));
+    return pictureOf(this.node, format, "chart", { images, annotations: this.annotations() });
   }
 
-  // Crowds of marks: clouds under the lines, marks of a front over them.
-  images() {
-    const { left, top, width, height } = this.box, scale = paperScale() ?? (window.devicePixelRatio || 1);
-    const painted = (layers) => {
-      if (!layers.length) return [];
-      const canvas = make("canvas", { width: Math.round(width * scale), height: Math.round(height * scale) }), context = softly(canvas);
+  // Crowds of marks: clouds under the lines, marks of a front over them, and names over all.
+  paint() {
+    const { left, top, width, height } = this.box, marked = this.layers.filter((layer) => layer.crowd || (this.space && layer.mode.includes("markers")));
+    this.sheets.forEach((sheet, k) => {
+      Object.assign(sheet.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` });
+      const [context, scale] = cleared(sheet.firstChild, width, height);
       context.translate(-left * scale, -top * scale);
-      for (const layer of layers) paintMarks(context, layer, scale);
-      return [canvas.toDataURL()];
-    };
-    const under = painted(this.layers.filter((layer) => layer.cloud));
-    const over = painted(this.layers.filter((layer) => (layer.crowd || (this.space && layer.mode.includes("markers"))) && !layer.cloud));
-    return [[under, "below"], [over, "above"]].flatMap(([sources, layer]) => sources.map((source) => ({ source, layer, ...this.spot() })));
+      for (const layer of marked) if (Boolean(layer.cloud) !== Boolean(k)) paintMarks(context, layer, scale);
+    });
+    this.moveSheets([0, 1], [0, 1]);
+    this.drawNames();
   }
 
-  // Where an image of the whole frame lies: in the axes' values where these are linear, so that it moves along in panning.
-  spot() {
-    const linear = this.x.kind === "linear" && this.y.kind === "linear", [low, high] = this.x.range, [bottom, top] = this.y.range;
-    return linear ? { xref: "x", yref: "y", x: low, y: top, sizex: high - low, sizey: top - bottom, sizing: "stretch" } : { xref: "x domain", yref: "y domain", x: 0, y: 1, sizex: 1, sizey: 1, sizing: "stretch" };
+  // While plotly pans or zooms, the canvases go along: they show these shares of what they were painted for.
+  moveSheets([west, east], [south, north]) {
+    const { width, height } = this.box, [wide, high] = [east - west, north - south];
+    const transform = `translate(${-west / wide * width}px, ${(north - 1) / high * height}px) scale(${1 / wide}, ${1 / high})`;
+    for (const part of [...this.sheets.map(({ firstChild }) => firstChild), this.words]) part.style.transform = transform;
   }
 
   place(layer) {
@@ -182,15 +197,20 @@ class Chart {
   }
 
   // Names beside marks, each where it covers neither a name nor a mark, else at the end of a short line.
-  annotations() {
+  drawNames() {
     const { left, top, width, height } = this.box;
-    const marks = this.names.map((name) => ({ ...name, px: this.px(name.x), py: this.py(name.y) })).filter(({ px, py }) => px >= left && px <= left + width && py >= top && py <= top + height);
-    this.labels = placedNames(marks, this.box);
+    const marks = this.space ? [] : this.names.map((name) => ({ ...name, px: this.px(name.x), py: this.py(name.y) }));
+    this.labels = placedNames(marks.filter(({ px, py }) => px >= left && px <= left + width && py >= top && py <= top + height), this.box);
+    this.words.replaceChildren(...this.labels.flatMap(({ px, py, from, to, at, far, text: words }) => [
+      ...(far ? [draw("line", { x1: px - left, y1: py - top, x2: Math.min(Math.max(px, from), to) - left, y2: at - top, stroke: "var(--soft)" })] : []),
+      text((from + to) / 2 - left, at - top + 4, words, "middle", "name halo"),
+    ]));
+  }
+
+  // The same for a picture.
+  annotations() {
     const inAxis = (scale, value) => (scale.kind === "log" ? Math.log10(value) : value);
-    return this.labels.map(({ px, py, x, y, from, to, at, text: words }) => {
-      const far = Math.hypot(Math.max(from - px, px - to, 0), Math.max(Math.abs(at - py) - 8, 0)) > 14;
-      return { x: inAxis(this.x, x), y: inAxis(this.y, y), ax: (from + to) / 2 - px, ay: at - py, text: plain(words), showarrow: true, arrowhead: 0, arrowwidth: 1, arrowcolor: far ? colour("soft") : "rgba(0,0,0,0)", font: { color: colour("ink"), weight: 600 }, bgcolor: faded(colour("card"), 0.6), borderpad: 0 };
-    });
+    return this.labels.map(({ px, py, x, y, from, to, at, far, text: words }) => ({ x: inAxis(this.x, x), y: inAxis(this.y, y), ax: (from + to) / 2 - px, ay: at - py, text: plain(words), arrowhead: 0, arrowwidth: 1, arrowcolor: far ? colour("soft") : "rgba(0,0,0,0)", font: { color: colour("ink"), weight: 600 }, bgcolor: faded(colour("card"), 0.6), borderpad: 0 }));
   }
 
   drawAxes() { this.back.replaceChildren(); }
@@ -206,7 +226,11 @@ class Chart {
       const { xaxis, yaxis } = this.node.layout;
       this.look({ x: ends(xaxis, this.x), y: ends(yaxis, this.y) });
     });
-    this.node.on("plotly_relayouting", () => { this.hideTip(); });
+    this.node.on("plotly_relayouting", () => {
+      const { xaxis, yaxis } = this.node._fullLayout; // only there the axes are as plotly shows them just now
+      this.hideTip();
+      this.moveSheets(ends(xaxis, this.x).map(this.x.share), ends(yaxis, this.y).map(this.y.share));
+    });
     this.node.on("plotly_selected", () => {
       const [drawn] = this.node.layout.selections ?? [];
       if (!drawn) return;

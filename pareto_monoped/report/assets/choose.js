@@ -4,12 +4,10 @@ const soundOnes = new Map();
 
 // Rows of a study that may be chosen: feasible, and not failed in their audit.
 function soundRows(study) {
-  const card = page.studies[study];
-  if (!soundOnes.has(study)) {
-    const out = new Set(card.ill_conditioned);
-    soundOnes.set(study, feasibleRows(card).filter((row) => !out.has(row)));
-  }
-  return soundOnes.get(study);
+  return once(soundOnes, study, () => {
+    const card = page.studies[study], out = new Set(card.ill_conditioned);
+    return feasibleRows(card).filter((row) => !out.has(row));
+  });
 }
 
 // Rows of a study's trials in a state.
@@ -38,10 +36,7 @@ function rowsMeeting(study, rows, list) {
 const within = new Map();
 on("conditions", () => within.clear());
 
-function keptWithin(key, find) {
-  if (!within.has(key)) within.set(key, find());
-  return within.get(key);
-}
+function keptWithin(key, find) { return once(within, key, find); }
 
 // Rows of all trials of a study that obey the conditions, as a mask.
 function masked(study) {
@@ -55,9 +50,8 @@ function masked(study) {
 const costLists = new Map();
 
 function costOf(study, name) {
-  const key = `${study} ${name}`, sign = -better(name);
-  if (!costLists.has(key)) costLists.set(key, columnOf(study, name).map((value) => sign * value));
-  return costLists.get(key);
+  const sign = -better(name);
+  return once(costLists, `${study} ${name}`, () => columnOf(study, name).map((value) => sign * value));
 }
 
 // Of rows with costs, one list per objective and less is better, those that no other betters; of equal ones the first.

@@ -1,4 +1,4 @@
-// Numbers of the trials: columns that the page has as lists, and others that it has as text, in single precision.
+// Numbers of the trials: columns that the page has as lists, and others in single precision.
 
 // A value of a measure or variable, null where there is none; an unknown name is an error.
 function valueAt(study, name, row) { return finite(columnOf(study, name)[row]); }
@@ -8,27 +8,21 @@ function finite(value) { return Number.isFinite(value) ? value : null; }
 const unpacked = new Map();
 
 // All values of a measure or variable of a study, one per trial; NaN where there is none.
-function columnOf(study, name) {
-  const key = `${study} ${name}`;
-  if (!unpacked.has(key)) unpacked.set(key, madeColumn(page.studies[study], name));
-  return unpacked.get(key);
-}
+function columnOf(study, name) { return once(unpacked, `${study} ${name}`, () => madeColumn(page.studies[study], name)); }
 
 function madeColumn({ trials: { columns, packed, trial }, robust }, name) {
-  if (columns[name]) return Float32Array.from(columns[name], (value) => value ?? NaN);
-  if (packed?.[name] !== undefined) return unpack(packed[name]);
+  if (columns[name]) return ArrayBuffer.isView(columns[name]) ? columns[name] : Float32Array.from(columns[name], (value) => value ?? NaN);
+  if (packed?.[name]) return unpack(packed[name]);
   // What is under uncertainty is there of some trials only.
   const values = new Float32Array(trial.length).fill(NaN);
-  if (robust?.packed[name] !== undefined) unpack(robust.packed[name]).forEach((value, k) => { values[robust.rows[k]] = value; });
+  if (robust?.packed[name]) unpack(robust.packed[name]).forEach((value, k) => { values[robust.rows[k]] = value; });
   else void quantity[name.split(".")[0]];
   return values;
 }
 
-function unpack(text) { return new Float32Array(bytesOf(text).buffer); }
+function unpack({ at, count }) { return new Float32Array(content, at, count); }
 
-for (const { trials: { columns } } of page.studies) {
-  for (const [name, text] of Object.entries(columns)) if (typeof text === "string") columns[name] = Array.from(unpack(text), finite);
-}
+for (const { trials: { columns } } of page.studies) for (const [name, given] of Object.entries(columns)) if (!Array.isArray(given)) columns[name] = unpack(given);
 
 // The measures and variables that some study has of every trial, in the order of the page's quantities.
 const KNOWN = (() => {

@@ -1,7 +1,10 @@
 // Small helpers: elements, numbers, colours. Text from a study becomes textContent, never markup.
 
 const SVG = "http://www.w3.org/2000/svg";
-const page = JSON.parse(await inflated(bytesOf(document.getElementById("payload").textContent)).text());
+// The page's content: numbers of columns and jumps, as many bytes as the text begins with, then JSON that has their places.
+const [numbers, letters] = byId("payload").textContent.split(" ");
+const content = await inflated(bytesOf(letters));
+const page = JSON.parse(new TextDecoder().decode(new Uint8Array(content, Number(numbers))));
 const { gravity_m_per_s2: GRAVITY, base_start_height_m: START_HEIGHT } = page.constants;
 // How each measure and variable is shown, by its name; asking for one that Python does not know is an error.
 const quantity = new Proxy(Object.fromEntries(page.quantities.map((q) => [q.name, q])), {
@@ -20,7 +23,16 @@ function bytesOf(base64) {
   return bytes;
 }
 
-function inflated(bytes) { return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))); }
+function inflated(bytes) { return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer(); }
+
+// What a map has under a key; it is found when it is first asked for.
+function once(map, key, find) {
+  if (!map.has(key)) map.set(key, find());
+  return map.get(key);
+}
+
+// Lets the browser paint and listen between two long steps.
+function nextTask() { return new Promise((done) => setTimeout(done)); }
 
 function byId(id) { return document.getElementById(id); }
 
@@ -58,10 +70,7 @@ function text(x, y, content, anchor = "start", kind = "") {
 const tints = new Map();
 
 // A colour of the style sheet; kept until the scheme changes, because asking for it makes the browser lay out the page.
-function colour(name) {
-  if (!tints.has(name)) tints.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
-  return tints.get(name);
-}
+function colour(name) { return once(tints, name, () => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim()); }
 
 function studyColour(index) { return colour(`c${index % 6}`); }
 

@@ -31,10 +31,8 @@ const homes = new Map();
 
 // The range of an axis that shows the whole; no condition changes it.
 function homeRange(side) {
-  const { x, y, ...own } = state.axes;
-  const key = `${side} ${x} ${y} ${own.logX} ${own.logY}`;
-  if (!homes.has(key)) homes.set(key, foundRange(side));
-  return homes.get(key);
+  const { x, y, logX, logY } = state.axes;
+  return once(homes, `${side} ${x} ${y} ${logX} ${logY}`, () => foundRange(side));
 }
 
 function foundRange(side) {
@@ -93,14 +91,12 @@ function sizesOf(study, name, rows, usual) {
 
 function cloudLayers(study) {
   const card = page.studies[study];
-  const onFront = new Set(card.front);
-  const ranged = filtered();
-  const tint = tinted();
+  const onFront = new Set(card.front), ranged = filtered(), mask = masked(study), tint = tinted();
   const list = [];
   for (const [letter, wanted, name] of [["f", state.layers.cloud, "dominated"], ["i", state.layers.infeasible, "infeasible"]]) {
     if (!wanted) continue;
     const rows = rowsIn(card, letter).filter((row) => !onFront.has(row));
-    const opacity = ranged ? rows.map((row) => (inRanges(study, row) ? 0.8 : 0.06)) : tint ? 0.6 : 0.35;
+    const opacity = ranged ? rows.map((row) => (mask[row] ? 0.8 : 0.06)) : tint ? 0.6 : 0.35;
     const marker = letter === "f"
       ? { size: 4, color: page.studies.length > 1 ? studyColour(study) : colour("cloud"), opacity, ...(tint ? { ramp: rangeOver(tint) } : {}) }
       : { size: 6, symbol: "cross", color: colour("bad"), opacity: ranged ? opacity : 0.6 };
@@ -124,7 +120,7 @@ function frontLayers(study) {
   const tint = studyColour(study);
   const many = [...state.visible].reduce((sum, i) => sum + page.studies[i].front.length, 0);
   const size = many > 1500 ? 4.5 : many > 300 ? 6 : 7.5;
-  const opacity = card.front.map((row) => (inRanges(study, row) ? 1 : 0.15));
+  const mask = masked(study), opacity = card.front.map((row) => (mask[row] ? 1 : 0.15));
   const marker = { size, symbol: MARKS[study % 6], color: tint, opacity };
   if (card.trials.columns.motor) {
     // Motors differ in colour and in mark: a measure may take the colour.
@@ -208,7 +204,6 @@ function drawFront() {
   front.space = space ? { title: axisTitle(depthName()), range: paddedBy("linear", rangeOver(depthName())), kind: "linear" } : null;
   front.set(layers, side(x, "x"), side(y, "y"), { names: space ? [] : namesOf(layers), view: space ? null : state.view });
   showRamp();
-  showNote();
 }
 
 function axisTitle(name) {
@@ -216,19 +211,17 @@ function axisTitle(name) {
   return axis ? `${axis}, ${unit}` : titled(name);
 }
 
-function showNote() {
-  const left = page.studies.reduce((sum, s) => sum + s.trials.total - s.trials.trial.length, 0);
-  byId("front-note").textContent = left ? `${left} dominated trials are left out of this page to keep it small; every count includes them.` : "";
+// Where the selected design stands on the axes, the depth of a 3D view among them.
+function selectedAt() {
+  const chosen = subject();
+  return [state.axes.x, state.axes.y, depthName()].map((name) => (chosen ? inShown(name, chosen.measures[name] ?? chosen.more[name]) : null));
 }
 
 // The ring lies over the chart, so that a selection does not redraw thousands of points.
 function placeRing() {
-  const chosen = subject();
-  const value = (name) => (chosen ? inShown(name, chosen.measures[name] ?? chosen.more[name]) : null);
-  const { x, y } = state.axes;
-  const across = value(x), up = value(y);
-  if (!front?.box || !chosen || across === null || up === null) { ring.hidden = true; return; }
-  const [left, top] = front.at(across, up, front.space ? value(depthName()) : null);
+  const [across, up, deep] = selectedAt();
+  if (!front?.box || across === null || up === null) { ring.hidden = true; return; }
+  const [left, top] = front.at(across, up, deep);
   const { box } = front;
   ring.hidden = !(left >= box.left - 1 && left <= box.left + box.width + 1 && top >= box.top - 1 && top <= box.top + box.height + 1);
   ring.style.left = `${left}px`;
@@ -237,10 +230,8 @@ function placeRing() {
 
 // A selection outside the view takes the view along.
 function bringAlong() {
-  const chosen = subject(), { x, y } = state.axes;
-  if (!front?.box || front.space || !chosen || !state.view) return;
-  const [across, up] = [x, y].map((name) => inShown(name, chosen.measures[name] ?? chosen.more[name]));
-  if (across === null || up === null) return;
+  const [across, up] = selectedAt();
+  if (!front?.box || front.space || !state.view || across === null || up === null) return;
   const [sx, sy] = [front.x.share(across), front.y.share(up)];
   if (sx >= 0 && sx <= 1 && sy >= 0 && sy <= 1) return;
   const moved = (scale, share) => [scale.value(share - 1 / 2), scale.value(share + 1 / 2)];
@@ -268,16 +259,10 @@ function byFrame({ corners, frame }) {
 }
 
 function describeFront() {
-  const { trials } = current();
-  const rows = keptFront(state.study);
-  const at = rows.indexOf(state.row);
-  gd.setAttribute("aria-valuemin", rows.length ? 1 : 0);
-  gd.setAttribute("aria-valuemax", rows.length);
-  gd.setAttribute("aria-valuenow", at + 1);
-  const chosen = subject();
-  gd.setAttribute("aria-valuetext", chosen
-    ? `${chosen.kind === "case" ? `paper's ${chosen.name}` : `trial ${trials.trial[state.row]}`}, ${told(page.objectives, (name) => chosen.measures[name])}`
-    : "no design");
+  const { trials } = current(), rows = keptFront(state.study), at = rows.indexOf(state.row);
+  const chosen = subject(), name = chosen?.kind === "case" ? `paper's ${chosen.name}` : `trial ${trials.trial[state.row]}`;
+  const words = chosen ? `${name}, ${told(page.objectives, (measure) => chosen.measures[measure])}` : "no design";
+  Object.assign(gd, { ariaValueMin: rows.length ? 1 : 0, ariaValueMax: rows.length, ariaValueNow: at + 1, ariaValueText: words });
 }
 
 function startFront() {
@@ -288,9 +273,8 @@ function startFront() {
   gd.append(ring);
   gd.addEventListener("keydown", frontKey);
   document.addEventListener("keydown", (event) => {
-    if (event.target.closest("input, select, textarea, button, canvas, summary, a, [tabindex]") || event.altKey || event.ctrlKey || event.metaKey) return;
-    if (event.key === "ArrowRight") moveAlongFront(1);
-    if (event.key === "ArrowLeft") moveAlongFront(-1);
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key], busy = event.target.closest("input, select, textarea, button, canvas, summary, a, [tabindex]");
+    if (step && !busy && !event.altKey && !event.ctrlKey && !event.metaKey) moveAlongFront(step);
   });
   startAxes();
   startMotorSwitches();

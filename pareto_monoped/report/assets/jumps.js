@@ -1,10 +1,8 @@
 // The jumps of the designs, read when one is asked for; report/packing.py says how they are packed.
 
-for (const jumps of page.studies.flatMap((study) => [study.jumps, study.case_jumps])) jumps.changes = new Int16Array(await inflated(bytesOf(jumps.data)).arrayBuffer());
-
 // A jump in SI units: lists of time and of every column, and the time of lift-off; null where none is kept.
-function unpackedJump({ keys, changes, counts, frames, lift_off_s }, key) {
-  const at = keys.indexOf(key), names = Object.keys(counts), result = { lift_off_s: lift_off_s[at] };
+function unpackedJump({ keys, data, counts, frames, lift_off_s }, key) {
+  const at = keys.indexOf(key), names = Object.keys(counts), result = { lift_off_s: lift_off_s[at] }, changes = new Int16Array(content, data.at, data.count);
   if (at < 0) return null;
   const own = (k) => changes.subarray((at * names.length + k) * frames, (at * names.length + k + 1) * frames);
   // A jump of fewer moments ends where time stands still.

@@ -67,8 +67,7 @@ let dots = [];
 function drawAlong() {
   const box = byId("along-charts");
   const shownStudies = [...state.visible].filter((i) => page.studies[i].front.length);
-  dots.forEach(({ dot }) => dot.remove());
-  dots = [];
+  for (const { dot } of dots.splice(0)) dot.remove();
   box.hidden = !shownStudies.length;
   if (!shownStudies.length) {
     byId("along-note").textContent = "There is no front to show.";
@@ -76,7 +75,7 @@ function drawAlong() {
   }
   const firsts = extent(shownStudies.flatMap((i) => page.studies[i].front.map((row) => page.studies[i].trials.columns[FIRST][row])));
   const x = padded(firsts.map((value) => value * quantity[FIRST].scale), 0.03);
-  const faint = colour("faint");
+  const faint = colour("faint"), firstsOf = new Map();
   const cells = page.variables.map((variable) => {
     const q = quantity[variable.name];
     const joint = variable.name.endsWith("_ratio") ? variable.name.replace("_ratio", "_gearbox") : null;
@@ -84,10 +83,10 @@ function drawAlong() {
     const y = padded(limits, 0.08);
     const one = (i, rows, opacity) => {
       const { trials } = page.studies[i], value = (name, row) => trials.columns[name][row];
-      const family = (row) => (joint ? page.gearboxes[value(joint, row)]?.family : "ISSPG");
+      const family = (row) => page.gearboxes[value(joint, row)]?.family;
       return {
-        x: rows.map((row) => value(FIRST, row) * quantity[FIRST].scale), y: rows.map((row) => value(variable.name, row) * q.scale), opacity,
-        mark: rows.map((row) => (family(row) === "ESSPG" ? "diamond" : "circle")), colour: studyColour(i),
+        x: once(firstsOf, rows, () => rows.map((row) => value(FIRST, row) * quantity[FIRST].scale)), y: rows.map((row) => value(variable.name, row) * q.scale), opacity,
+        mark: joint ? rows.map((row) => (family(row) === "ESSPG" ? "diamond" : "circle")) : "circle", colour: studyColour(i),
         colours: trials.columns.motor ? rows.map((row) => colour(`c${motorTint(kitOf(page.studies[i], row))}`)) : null,
       };
     };
@@ -105,7 +104,7 @@ function drawAlong() {
     return { dot, chart: places[k], variable, q: quantity[variable.name] };
   });
   moveDots();
-  byId("along-note").textContent = `Each point is one design of the front. Dashed: bounds. Diamonds: ratios with a gearbox outside the motor (ESSPG), circles: inside its stator (ISSPG)${switchRatio() === null ? "" : `; the switch lies at ${switchRatio()} : 1`}.${switchesText()}`;
+  byId("along-note").textContent = `Each point is one design of the front. Dashed: bounds. Diamonds: ratios with a gearbox outside the motor (ESSPG), circles: inside its stator (ISSPG)${switchRatio() === null ? "" : `; the switch lies at ${switchRatio()} : 1`}.${page.switches[state.study]}`;
   const whose = (study) => (page.studies.length > 1 ? `${study.label}: ` : "");
   byId("at-bounds").replaceChildren(...page.studies.flatMap((study) => study.at_bounds.map((line) => make("li", {}, whose(study) + line))));
 }
@@ -120,21 +119,6 @@ function switchRatio() {
   return at >= 0 && at < points.length - 1 ? points[at + 1].ratio_low : null;
 }
 
-function switchesText() {
-  const { front, trials } = current();
-  const at = (value) => `${round(value * quantity[FIRST].scale, 2)} ${quantity[FIRST].unit}`;
-  const parts = ["hip", "knee"].map((side) => {
-    const families = front.map((row) => page.gearboxes[trials.columns[`${side}_gearbox`][row]]?.family);
-    const external = families.filter((f) => f === "ESSPG").length;
-    if (!external) return `the ${side} stays with ISSPG`;
-    if (external === families.length) return `the ${side} stays with ESSPG`;
-    const changes = families.flatMap((f, i) => (i && f !== families[i - 1] ? [trials.columns[FIRST][front[i]]] : []));
-    if (changes.length <= 3) return `the ${side} changes at ${changes.map(at).join(", ")}`;
-    return `the ${side} has ESSPG in ${external} of ${families.length} designs, changing ${changes.length} times between ${at(changes[0])} and ${at(changes.at(-1))}`;
-  });
-  return front.length > 1 ? ` Along this front ${parts.join("; ")}.` : "";
-}
-
 function moveDots() {
   const chosen = subject();
   for (const { dot, chart, variable, q } of dots) {
@@ -146,10 +130,8 @@ function moveDots() {
 }
 
 function startLines() {
-  let again = () => {};
+  const again = lazily("time-charts", drawTimes), alongAgain = lazily("along-charts", drawAlong);
   on("selection", (how) => { again(); if (how.other) alongAgain(); else moveDots(); });
   on("time", moveCursors);
-  again = lazily("time-charts", drawTimes);
-  const alongAgain = lazily("along-charts", drawAlong);
   on("view", alongAgain);
 }

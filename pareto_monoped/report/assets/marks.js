@@ -36,8 +36,8 @@ function picture(symbol, size, tint, scale) {
   const [d, open] = outline(symbol);
   Object.assign(context, { fillStyle: tint, strokeStyle: tint, lineWidth: 18 / size, lineJoin: "round" });
   context[open ? "stroke" : "fill"](new Path2D(d));
-  const made = { image: canvas.transferToImageBitmap(), reach }; // a bitmap is placed faster than a canvas
   if (pictures.size > 2000) pictures.clear();
+  const made = { image: canvas.transferToImageBitmap(), reach, id: pictures.size + 1 }; // a bitmap is placed faster than a canvas
   pictures.set(key, made);
   return made;
 }
@@ -54,40 +54,54 @@ function tintOf(marker, i) {
 // A canvas that is read back as an image, and so is better kept out of the graphics card.
 function softly(canvas) { return canvas.getContext("2d", { willReadFrequently: true }); }
 
+// A canvas of this size on the page, empty, with its context and its pixels per pixel of the page.
+function cleared(canvas, width, height) {
+  const scale = paperScale() ?? (window.devicePixelRatio || 1);
+  Object.assign(canvas, { width: Math.round(width * scale), height: Math.round(height * scale) });
+  return [softly(canvas), scale];
+}
+
+// A canvas over the frame of the axes as an image in a picture of plotly's.
+function imageOf(canvas, k = 0) {
+  const own = k ? k + 1 : "";
+  return { source: canvas.toDataURL(), xref: `x${own} domain`, yref: `y${own} domain`, x: 0, y: 1, sizex: 1, sizey: 1, sizing: "stretch", layer: "above" };
+}
+
 const FAINT = 0.3; // marks below it are faint together, however many lie over each other
 
-function paintMarks(context, layer, scale) {
-  const { marker, px, py, cloud } = layer, grid = cloud ? scale / 2 : scale, snapped = cloud ? Math.round : (at) => at, faint = new Map(), drawn = new Map(), here = context.getTransform();
-  const place = (to, i) => {
-    if (Number.isNaN(px[i]) || Number.isNaN(py[i])) return;
-    const made = picture(entry(marker.symbol, i) ?? "circle", entry(marker.size, i), tintOf(marker, i), scale), { image, reach } = made;
-    // One mark over another, on the same pixel, is drawn once; of the dots of a cloud one on every two by two pixels.
-    if (!drawn.has(made)) drawn.set(made, new Set());
-    const at = Math.round(grid * px[i]) * 65536 + Math.round(grid * py[i]), known = drawn.get(made), size = known.size;
-    if (known.add(at).size > size) to.drawImage(image, snapped(scale * px[i]) - reach, snapped(scale * py[i]) - reach);
+const EDGE_PX = 16; // marks whose middle is this far outside are still in sight
+
+// One mark over another, on the same pixel, is drawn once; of the dots of a cloud one on every two by two pixels.
+function paintMarks(context, { marker, px, py, cloud }, scale) {
+  const { width, height } = context.canvas, here = context.getTransform(), grid = cloud ? 2 : 1, snapped = cloud ? Math.round : (at) => at;
+  const wide = Math.ceil((width + 2 * EDGE_PX) / grid) + 1, all = wide * (Math.ceil((height + 2 * EDGE_PX) / grid) + 1);
+  const pictureOf = (i) => picture(entry(marker.symbol, i) ?? "circle", entry(marker.size, i), tintOf(marker, i), scale);
+  const one = marker.ramp || [marker.symbol, marker.size, marker.color].some(Array.isArray) || !px.length ? null : pictureOf(0);
+  const faint = new Map(), strong = { to: context, seen: new Uint16Array(all) };
+  const place = ({ to, seen }, i) => {
+    const x = scale * px[i] + here.e, y = scale * py[i] + here.f;
+    if (!(x > -EDGE_PX && x < width + EDGE_PX && y > -EDGE_PX && y < height + EDGE_PX)) return;
+    const { image, reach, id } = one ?? pictureOf(i), at = Math.round((y + EDGE_PX) / grid) * wide + Math.round((x + EDGE_PX) / grid);
+    if (seen[at] === id) return;
+    seen[at] = id;
+    to.drawImage(image, snapped(x) - reach, snapped(y) - reach);
   };
   for (let i = 0; i < px.length; i += 1) {
     const opacity = entry(marker.opacity ?? 1, i);
-    if (opacity < FAINT) {
-      if (!faint.has(opacity)) {
-        const sheet = softly(make("canvas", { width: context.canvas.width, height: context.canvas.height }));
-        sheet.setTransform(here);
-        faint.set(opacity, sheet);
-      }
-      place(faint.get(opacity), i);
-    }
+    if (opacity >= FAINT) continue;
+    if (!faint.has(opacity)) faint.set(opacity, { to: softly(make("canvas", { width, height })), seen: new Uint16Array(all) });
+    place(faint.get(opacity), i);
   }
-  for (const [opacity, sheet] of faint) {
+  context.setTransform(1, 0, 0, 1, 0, 0);
+  for (const [opacity, { to }] of faint) {
     context.globalAlpha = opacity;
-    context.setTransform(1, 0, 0, 1, 0, 0);
-    context.drawImage(sheet.canvas, 0, 0);
-    context.setTransform(here);
+    context.drawImage(to.canvas, 0, 0);
   }
-  drawn.clear();
   for (let i = 0; i < px.length; i += 1) {
     const opacity = entry(marker.opacity ?? 1, i);
     context.globalAlpha = opacity;
-    if (opacity >= FAINT) place(context, i);
+    if (opacity >= FAINT) place(strong, i);
   }
   context.globalAlpha = 1;
+  context.setTransform(here);
 }

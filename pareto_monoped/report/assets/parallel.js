@@ -7,7 +7,7 @@ const MOST_OF_FRONT = 260, MOST_OTHERS = 260;
 const LINE_PX = 8; // a pointer this near to a line means it
 const AXIS_PX = 76; // the least room of an axis and its name
 const SOFT_SHARE = 1e-3; // of the top of an axis with zeros: below it the axis is linear
-const par = { node: byId("parallel-chart"), top: 46, bottom: 24, left: 52, right: 62, names: [], xs: [], scales: {}, front: [], others: [], moving: null };
+const par = { node: byId("parallel-chart"), top: 46, bottom: 24, left: 52, right: 62, names: [], xs: [], scales: new Map(), front: [], others: [], moving: null };
 
 // The axes from left to right; while one is dragged, as they would then be.
 function axesShown() { return par.moving ?? state.parallel ?? AXES; }
@@ -23,14 +23,13 @@ function valueAtY(name, y) {
 
 // An axis from bound to bound, or over all feasible trials; logarithmic where most of it would be empty.
 function axisScale(name) {
-  if (!par.scales[name]) {
+  return once(par.scales, name, () => {
     const values = page.studies.flatMap((study, i) => { const column = columnOf(i, name); return feasibleRows(study).map((row) => column[row]); });
     const ends = page.studies.flatMap((s) => s.bounds[name] ?? []);
     const [low, high] = extent(ends.length ? ends : values);
     const kind = low === high ? "linear" : kindFor([...values, low, high]);
-    par.scales[name] = scaleOf(low === high ? padded([low, high]) : [low, high], kind, high * SOFT_SHARE);
-  }
-  return par.scales[name];
+    return scaleOf(low === high ? padded([low, high]) : [low, high], kind, high * SOFT_SHARE);
+  });
 }
 
 function thinnedTo(list, most) {
@@ -43,8 +42,8 @@ function linesToDraw() {
   const others = [], onFronts = [];
   for (const i of state.visible) {
     const study = page.studies[i];
-    const front = keptFront(i), onFront = new Set(front);
-    if (state.layers.cloud) for (const row of feasibleRows(study)) if (!onFront.has(row) && inRanges(i, row)) others.push([i, row]);
+    const front = keptFront(i), onFront = new Set(front), mask = masked(i);
+    if (state.layers.cloud) for (const row of feasibleRows(study)) if (mask[row] && !onFront.has(row)) others.push([i, row]);
     for (const row of front) onFronts.push([i, row]);
   }
   par.all = onFronts.length + others.length;
@@ -186,10 +185,10 @@ function describeRanges() {
   if (!filtered()) { note.textContent = words; return; }
   let onFront = 0, all = 0, total = 0;
   for (const i of state.visible) {
-    const study = page.studies[i];
+    const rows = feasibleRows(page.studies[i]), mask = masked(i);
     onFront += keptFront(i).length;
-    total += feasibleRows(study).length;
-    all += feasibleRows(study).filter((row) => inRanges(i, row)).length;
+    total += rows.length;
+    all += rows.filter((row) => mask[row]).length;
   }
   note.textContent = `Within the conditions: ${onFront} designs on the front, ${all} of ${total} feasible trials on this page. ${words} `;
   note.append(buttonOf("Drop all conditions", clearConditions, { id: "clear-ranges" }));
@@ -217,14 +216,8 @@ function nearestLine(x, y) {
 }
 
 function startParallel() {
-  par.canvas = make("canvas", { role: "img", "aria-label": "Parallel coordinates: one line per design across its variables and measures" });
-  par.svg = draw("svg", { "aria-hidden": "true" });
-  par.pointed = draw("path", { stroke: "var(--ink)", "stroke-width": 2 });
-  par.selected = draw("svg", { "aria-hidden": "true", fill: "none", "pointer-events": "none" },
-    draw("path", { stroke: "var(--card)", "stroke-width": 6 }), draw("path", { stroke: "var(--select)", "stroke-width": 3, id: "parallel-selected" }), par.pointed);
-  par.heads = make("div", { class: "heads", role: "group", "aria-label": "Order of the axes" });
-  par.tip = make("div", { class: "tip", hidden: "" });
-  par.node.append(par.canvas, par.selected, par.svg, par.heads, par.tip);
+  [par.canvas, par.selected, par.svg, par.heads, par.tip] = par.node.children;
+  par.pointed = par.selected.lastElementChild;
   buildFields();
   for (const name of new Set([...AXES, ...axisNames()])) byId("parallel-axes").append(switchOf({ "data-parallel": name }, "", titled(name), "parallel", () => axesShown().includes(name), (shown) => setParallel([...axesShown().filter((one) => one !== name), ...(shown ? [name] : [])])));
   listenToAxes();

@@ -12,7 +12,7 @@ function lazily(id, render) {
   charts.push(again);
   new IntersectionObserver((entries) => {
     near = entries.at(-1).isIntersecting;
-    if (near && stale) now();
+    if (near) setTimeout(() => { if (stale) now(); }); // each chart in a task of its own
   }, { rootMargin: "300px" }).observe(node);
   new ResizeObserver(() => {
     const before = width;
@@ -23,8 +23,11 @@ function lazily(id, render) {
   return again;
 }
 
+let printing = false;
+for (const event of ["beforeprint", "afterprint"]) window.addEventListener(event, () => { printing = event === "beforeprint"; });
+
 // A page is printed with more dots per inch than a screen has.
-function paperScale() { return matchMedia("print").matches ? 3 : null; }
+function paperScale() { return printing || matchMedia("print").matches ? 3 : null; }
 
 function describe(node, words) {
   node.setAttribute("role", "img");
@@ -62,9 +65,10 @@ function placedNames(marks, { left, top, width, height }) {
       return a >= left && b <= left + width && c >= top && d <= top + height && !taken.some(([e, f, g, h]) => a < f && b > e && c < h && d > g);
     };
     const spot = spots.find((one) => free(one) && own(one)) ?? spots.find(free) ?? spots[0];
-    const box = boxed(spot);
-    taken.push(box);
-    return { ...mark, from: box[0], to: box[1], at: spot[1] };
+    const [from, to, ...rest] = boxed(spot), at = spot[1];
+    taken.push([from, to, ...rest]);
+    const far = Math.hypot(Math.max(from - mark.px, mark.px - to, 0), Math.max(Math.abs(at - mark.py) - 8, 0)) > 14;
+    return { ...mark, from, to, at, far };
   });
 }
 

@@ -56,7 +56,7 @@ const player = new Player(["play", "scrub", "speed"], "Play", () => player.jump?
 
 // One scale for all designs: the highest jump of all fronts and cases fits.
 const STAGE_TOP = (() => {
-  const heights = page.studies.flatMap((study) => [...study.front.map((row) => study.trials.columns.height_m[row] ?? 0), ...study.cases.map((made) => made.height_m ?? 0)]);
+  const heights = page.studies.flatMap((study) => [...study.front.map((row) => study.trials.columns.height_m[row]), ...study.cases.map((made) => made.height_m ?? 0)]);
   return Math.max(heights.reduce((most, height) => Math.max(most, height), START_HEIGHT) + 0.14, 0.95);
 })();
 

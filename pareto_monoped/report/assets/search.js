@@ -69,22 +69,12 @@ function drawMap(node) {
 function drawLinks(node) {
   const inMm = (leg) => leg.length_m.map((l) => l * 1000);
   const line = (name, x, y, more) => ({ mode: "lines", name, x, y, line: more, text: (i) => `${plain(name)}<br>${round(x[i], 0)} mm: ${round(y[i])} kg` });
-  const links = page.maps.flatMap(({ motor, leg }, k) => {
-    const own = page.maps.length > 1 ? `, ${motor}` : "";
-    const dash = k ? "dot" : "solid";
-    return [
-      line(`thigh${own}`, inMm(leg), leg.thigh_kg, { color: colour("hip"), width: 2.2, dash }),
-      line(`shank${own}`, inMm(leg), leg.shank_kg, { color: colour("knee"), width: 2.2, dash }),
-    ];
-  });
-  const mm = inMm(page.maps[0].leg);
-  const { published_link_kg: base, published_link_kg_per_m: slope } = page.constants;
-  const list = [
-    ...links,
-    line("published link", mm, page.maps[0].leg.length_m.map((l) => base + slope * l), { color: colour("faint"), width: 1.6, dash: "dash" }),
-  ];
+  const links = page.maps.flatMap(({ motor, leg }, k) => [["thigh", "hip"], ["shank", "knee"]].map(([part, joint]) => (
+    line(`${part}${page.maps.length > 1 ? `, ${motor}` : ""}`, inMm(leg), leg[`${part}_kg`], { color: colour(joint), width: 2.2, dash: k ? "dot" : "solid" })
+  )));
+  const [{ leg }] = page.maps, { published_link_kg: base, published_link_kg_per_m: slope } = page.constants;
+  const list = [...links, line("published link", inMm(leg), leg.length_m.map((l) => base + slope * l), { color: colour("faint"), width: 1.6, dash: "dash" })];
   plot(node, list, "link length, mm", "mass, kg", { fromZero: [false, true] });
-  describe(node, "Mass of thigh and shank over their length");
 }
 
 function startSearch() {

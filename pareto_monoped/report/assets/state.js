@@ -14,21 +14,7 @@
 //   state.parallel                names of the axes of the parallel coordinates from left to right, or null: the usual ones
 //   state.table                   { rows: "front" or "all", columns: names or null, sort: name, down: boolean, find }
 //
-// To read it
-//   current(), place()            the selected study; the selection's place on its front, or -1
-//   meets(study, row)             whether a trial obeys all conditions (ranges, motors, studies shown)
-//   inRanges(study, row)          the same without the studies shown
-//   keptFront(study)              rows of a study's front within the conditions (choose.js), by its first objective
-//   filtered()                    whether ranges or motors keep some designs out
-//   shortlisted(study, row)       place on the shortlist, or -1
-//   valueAt, columnOf, knownNames (data.js) and subject() (subject.js): numbers of a trial
-//
-// To change it
-//   select(study, row, byUser), selectCase(study, name), moveAlongFront(steps), moveToStudy(step)
-//   setRange(name, [least, most] or null, final), clearConditions(), showStudy(i, on), showMotor(kit, on), setBest(way)
-//   setAxes({...}), showLayer(key, on), setTable({...}), setParallel(names)
-//   keep(study, row), drop(study, row), setNote(study, row, text)
-//   undo(), redo(), resetState()
+// It is read and changed by the functions under the headings below.
 //
 // To hear of changes: on(event, listener)
 //   "selection" { byUser, other: another study }, "conditions" { final }, "axes", "layers", "shortlist", "table",
@@ -120,11 +106,11 @@ function moveToStudy(step) {
 
 // Conditions.
 
+// Whether ranges or motors keep some designs out.
 function filtered() { return Object.keys(state.ranges).length > 0 || state.withoutMotors.size > 0; }
 
-function inRanges(study, row) { return !filtered() || masked(study)[row] === 1; }
-
-function meets(study, row) { return state.visible.has(study) && inRanges(study, row); }
+// Whether a trial obeys the ranges and is of a motor wanted.
+function inRanges(study, row) { return masked(study)[row] === 1; }
 
 // While a range is dragged it is not final: only what is quick to draw follows.
 function setRange(name, range, final = true) {

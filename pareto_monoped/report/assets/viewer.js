@@ -1,18 +1,10 @@
 // The exported CAD of the selected design, turned with the mouse, a finger or the arrow keys; plain WebGL 2.
 
-const VERTEX = `#version 300 es
-uniform mat4 view; uniform float aspect; in vec3 position; in vec3 tint; out vec3 place; out vec3 shade;
-void main() { vec4 p = view * vec4(position, 1.0); place = p.xyz; shade = tint; gl_Position = vec4(p.x / aspect, p.y, 0.4 * p.z, 1.0); }`;
-// The normal of a flat triangle is the cross product of the position's derivatives along the screen's axes.
-const FRAGMENT = `#version 300 es
-precision highp float; in vec3 place; in vec3 shade; out vec4 pixel;
-void main() { vec3 n = normalize(cross(dFdx(place), dFdy(place))); float light = 0.45 + 0.55 * abs(dot(n, normalize(vec3(0.4, 0.6, 0.7)))); pixel = vec4(shade * light, 1.0); }`;
-
 function program(gl) {
   const made = gl.createProgram();
-  for (const [kind, source] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
+  for (const [kind, id] of [[gl.VERTEX_SHADER, "vertex"], [gl.FRAGMENT_SHADER, "fragment"]]) {
     const shader = gl.createShader(kind);
-    gl.shaderSource(shader, source);
+    gl.shaderSource(shader, byId(id).textContent);
     gl.compileShader(shader);
     gl.attachShader(made, shader);
   }
