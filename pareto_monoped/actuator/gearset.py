@@ -155,16 +155,16 @@ class GearSet:
 
     def chosen(self, index: int) -> "GearSet":
         """Return one set out of arrays, with plain numbers."""
-        return GearSet(
+        one = GearSet(
             sun_teeth=int(np.asarray(self.sun_teeth)[index]),
             planet_teeth=int(np.asarray(self.planet_teeth)[index]),
             ring_teeth=int(np.asarray(self.ring_teeth)[index]),
             module_mm=float(np.asarray(self.module_mm)[index]),
             planets=int(np.asarray(self.planets)[index]),
             backlash_mm=float(self._spread(self.backlash_mm)[index]),
-            tips_fitted=self.tips_fitted,
             **{name: float(self._spread(getattr(self, name))[index]) for name in _SHIFTS},
         )
+        return self._with_tips(one, index)
 
     def where(self, mask: NDArray[np.bool_] | NDArray[np.intp]) -> "GearSet":
         """Return the sets at a mask or at indices."""
@@ -173,10 +173,13 @@ class GearSet:
             name: self._spread(getattr(self, name))[mask] if self.is_shifted else 0.0 for name in _SHIFTS
         }
         backlash = self._spread(self.backlash_mm)[mask] if np.ndim(self.backlash_mm) else self.backlash_mm
-        some = GearSet(**teeth, **shifts, backlash_mm=backlash)
-        if self.tips_fitted:  # known already, and dear
+        return self._with_tips(GearSet(**teeth, **shifts, backlash_mm=backlash), mask)
+
+    def _with_tips(self, some: "GearSet", at: int | NDArray[np.bool_] | NDArray[np.intp]) -> "GearSet":
+        """Return some of the sets, made without their tips, with these: they are known already, and dear."""
+        if self.tips_fitted:
             object.__setattr__(some, "tips_fitted", True)
-            object.__setattr__(some, "_cuts", _Cuts(*(self._spread(cut)[mask] for cut in self._cuts)))
+            object.__setattr__(some, "_cuts", _Cuts(*(self._spread(cut)[at] for cut in self._cuts)))
         return some
 
     def _spread(self, value: Numbers) -> Floats:

@@ -251,7 +251,7 @@ class _Rating:
         tenths, mass = self.screen.tenths, np.where(solved, self.mass_kg, np.inf)
         found = np.full(10 * RATIO_HIGH, np.inf)
         known = np.flatnonzero(np.isfinite(mass))
-        chosen = known[_rank(tenths[known], mass[known]) == place]
+        chosen = known[rank(tenths[known], mass[known]) == place]
         found[tenths[chosen]] = mass[chosen]
         return found
 
@@ -264,10 +264,10 @@ class _Rating:
         """
         tenths = self.screen.tenths[rows]
         light = self._at_least_width_kg(rows)
-        near = _rank(tenths, light) < _NEAR
+        near = rank(tenths, light) < _NEAR
         bounded = self._bounded(rows[near])
         least, hopeless = bounded.least_mass_kg(self.judge), bounded.bounds.hopeless
-        first = ~hopeless & (_rank(tenths[near], np.where(hopeless, np.inf, least)) < _FIRST)
+        first = ~hopeless & (rank(tenths[near], np.where(hopeless, np.inf, least)) < _FIRST)
         self.rate(bounded.where(first))
         second = self.lightest(1)[tenths]
         self.rate(bounded.where(~first & (least <= second[near])))
@@ -320,7 +320,7 @@ class _Bounded:
         return judge.mass_kg(self.stage.gears, self.bounds.floor_mm)
 
 
-def _rank(groups: NDArray[np.int64], values: Floats) -> NDArray[np.intp]:
+def rank(groups: NDArray[np.int64], values: Floats) -> NDArray[np.intp]:
     """Return the place of each value among those of its group, from 0."""
     order = np.lexsort((values, groups))
     first = np.searchsorted(groups[order], groups[order])
