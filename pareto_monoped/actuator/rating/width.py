@@ -67,13 +67,16 @@ def width_bounds(stage: Stage, off: Collection[str] = ()) -> WidthBounds:
     low, high = _limits(stage)
     most = _margin(stage, high, off)
     enough = most >= 0.0
-    hopeless = ~enough & (_margin(stage, _tried(low, high)[-2], off) < most)
-    floor = low
-    for _ in range(_FLOOR_STEPS):
-        floor = np.clip(np.ceil(np.round(floor * _shortage(stage, floor, off), 6)), floor, high)
     # Otherwise a width between the limits may be enough, and if none is, any may be the best.
-    floor = np.where(enough, floor, low)
-    return WidthBounds(floor_mm=_in_mm(np.where(hopeless, high, floor), stage), enough=enough, hopeless=hopeless)
+    floor, hopeless, before = low.copy(), ~enough, _tried(low, high)[-2]
+    rows = np.flatnonzero(~enough)
+    hopeless[rows] = _margin(stage.rows(rows), before[rows], off) < most[rows]
+    floor[hopeless] = high[hopeless]
+    rows, part = np.flatnonzero(enough), stage.rows(enough)
+    for _ in range(_FLOOR_STEPS):
+        needed = np.ceil(np.round(floor[rows] * _shortage(part, floor[rows], off), 6))
+        floor[rows] = np.clip(needed, floor[rows], high[rows])
+    return WidthBounds(floor_mm=_in_mm(floor, stage), enough=enough, hopeless=hopeless)
 
 
 def least_width_mm(stage: Stage, off: Collection[str] = (), bounds: WidthBounds | None = None) -> Floats:
