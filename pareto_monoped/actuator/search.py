@@ -48,9 +48,7 @@ def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[st
     lightest[low] = numbers[:, 0, -1]
     np.minimum.at(nearest, tenths, nearness)
     solved = np.isfinite(lightest)[tenths]
-    rivals = np.where(
-        solved, judged.considered & (count == 1) & (mass < lightest[tenths]), nearness == nearest[tenths]
-    )
+    rivals = np.where(solved, judged.considered & (count == 1) & (mass < lightest[tenths]), nearness == nearest[tenths])
     in_the_way = np.zeros((10 * RATIO_HIGH, len(judged.names)), dtype=bool)
     for name, row in enumerate(broken):
         in_the_way[tenths[rivals & row], name] = True
