@@ -202,10 +202,11 @@ def _combined(sets: Sequence[GearSet], combine: Callable[[Sequence[Any]], Number
     found = object.__new__(GearSet)
     for each in fields(GearSet):
         values = [getattr(one, each.name) for one in sets]
-        if isinstance(values[0], tuple):
-            combined = type(values[0])(*map(combine, zip(*values, strict=True)))
-        else:
-            combined = values[0] if isinstance(values[0], bool) else combine(values)
+        combined: Any = values[0]
+        if isinstance(combined, tuple):
+            combined = type(combined)(*(combine(numbers) for numbers in zip(*values, strict=True)))
+        elif not isinstance(combined, bool):
+            combined = combine(values)
         object.__setattr__(found, each.name, combined)
     return found
 
