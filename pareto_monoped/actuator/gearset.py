@@ -203,7 +203,7 @@ def _combined(sets: Sequence[GearSet], combine: Callable[[Sequence[Any]], Number
     for each in fields(GearSet):
         values = [getattr(one, each.name) for one in sets]
         combined: Any = values[0]
-        if isinstance(combined, tuple):
+        if isinstance(combined, _Shifts | _Cuts):
             combined = type(combined)(*(combine(numbers) for numbers in zip(*values, strict=True)))
         elif not isinstance(combined, bool):
             combined = combine(values)
