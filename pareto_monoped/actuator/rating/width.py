@@ -86,7 +86,7 @@ def least_width_mm(stage: Stage, off: Collection[str] = (), bounds: WidthBounds 
     """Return the least multiple of the step at which all safety factors are kept.
 
     Where the largest width is not enough, but safety no longer grows there, a few widths are tried first, to find the
-    part where it grows. Bisection then finds the first width that is enough.
+    part where it grows. Guesses from what is needed then close in on the first width that is enough.
 
     ``off``: names of rules that need not be kept.
 
