@@ -2,7 +2,7 @@
 load.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
@@ -32,7 +32,7 @@ class _Cuts(NamedTuple):
     ring: Numbers
 
 
-_COUNTS, _SHIFTS = ("sun_teeth", "planet_teeth", "ring_teeth", "module_mm", "planets"), ("centre_shift", "sun_shift")
+_COUNTS, _SHIFTS = ("sun_teeth", "planet_teeth", "ring_teeth", "planets"), ("centre_shift", "sun_shift")
 _UNSHIFTED = _Shifts(PRESSURE_ANGLE_RAD, PRESSURE_ANGLE_RAD, 0.0, 0.0)
 FORM_MARGIN_MODULES = 0.02
 """From where a flank begins, or ends in a ring, to where its mate's tip reaches, along the radius: our own choice."""
@@ -155,29 +155,19 @@ class GearSet:
 
     def chosen(self, index: int) -> "GearSet":
         """Return one set out of arrays, with plain numbers."""
-        return GearSet(
-            sun_teeth=int(np.asarray(self.sun_teeth)[index]),
-            planet_teeth=int(np.asarray(self.planet_teeth)[index]),
-            ring_teeth=int(np.asarray(self.ring_teeth)[index]),
-            module_mm=float(np.asarray(self.module_mm)[index]),
-            planets=int(np.asarray(self.planets)[index]),
-            backlash_mm=float(self._spread(self.backlash_mm)[index]),
-            tips_fitted=self.tips_fitted,
-            **{name: float(self._spread(getattr(self, name))[index]) for name in _SHIFTS},
-        )
+        numbers: dict[str, Any] = {
+            name: float(self._spread(getattr(self, name))[index]) for name in ("module_mm", "backlash_mm", *_SHIFTS)
+        }
+        teeth: dict[str, Any] = {name: int(np.asarray(getattr(self, name))[index]) for name in _COUNTS}
+        one = GearSet(**teeth, **numbers)
+        # Known already, and dear.
+        object.__setattr__(one, "tips_fitted", self.tips_fitted)
+        object.__setattr__(one, "_cuts", _Cuts(*(self._spread(cut)[index] for cut in self._cuts)))
+        return one
 
     def where(self, mask: NDArray[np.bool_] | NDArray[np.intp]) -> "GearSet":
         """Return the sets at a mask or at indices."""
-        teeth: dict[str, Any] = {name: np.asarray(getattr(self, name))[mask] for name in _COUNTS}
-        shifts: dict[str, Any] = {
-            name: self._spread(getattr(self, name))[mask] if self.is_shifted else 0.0 for name in _SHIFTS
-        }
-        backlash = self._spread(self.backlash_mm)[mask] if np.ndim(self.backlash_mm) else self.backlash_mm
-        some = GearSet(**teeth, **shifts, backlash_mm=backlash)
-        if self.tips_fitted:  # known already, and dear
-            object.__setattr__(some, "tips_fitted", True)
-            object.__setattr__(some, "_cuts", _Cuts(*(self._spread(cut)[mask] for cut in self._cuts)))
-        return some
+        return _combined([self], lambda values: values[0][mask] if np.ndim(values[0]) else values[0])
 
     def _spread(self, value: Numbers) -> Floats:
         """Return a number as an array of the sets' shape."""
@@ -198,14 +188,27 @@ class GearSet:
 
 def joined(sets: Sequence[GearSet]) -> GearSet:
     """Return several arrays of gear sets as one."""
-    columns = {
-        each.name: np.concatenate(
-            [np.atleast_1d(np.broadcast_to(getattr(one, each.name), np.shape(one.sun_teeth))) for one in sets]
-        ).astype(np.float64)
-        for each in fields(GearSet)
-        if each.init and each.name != "tips_fitted"
-    }
-    return GearSet(**columns, tips_fitted=sets[0].tips_fitted)
+    shapes = [np.shape(one.sun_teeth) for one in sets]
+
+    def columns(values: Sequence[Numbers]) -> Numbers:
+        spread = [np.atleast_1d(np.broadcast_to(value, shape)) for value, shape in zip(values, shapes, strict=True)]
+        return np.concatenate(spread).astype(np.float64)
+
+    return _combined(sets, columns)
+
+
+def _combined(sets: Sequence[GearSet], combine: Callable[[Sequence[Any]], Numbers]) -> GearSet:
+    """Return gear sets each of whose numbers is a combination of others', also those that are dear to work out."""
+    found = object.__new__(GearSet)
+    for each in fields(GearSet):
+        values = [getattr(one, each.name) for one in sets]
+        combined: Any = values[0]
+        if isinstance(combined, _Shifts | _Cuts):
+            combined = type(combined)(*(combine(numbers) for numbers in zip(*values, strict=True)))
+        elif not isinstance(combined, bool):
+            combined = combine(values)
+        object.__setattr__(found, each.name, combined)
+    return found
 
 
 def _shifts(gears: GearSet) -> _Shifts:

@@ -251,29 +251,31 @@ class _Rating:
         tenths, mass = self.screen.tenths, np.where(solved, self.mass_kg, np.inf)
         found = np.full(10 * RATIO_HIGH, np.inf)
         known = np.flatnonzero(np.isfinite(mass))
-        chosen = known[_rank(tenths[known], mass[known]) == place]
+        chosen = known[rank(tenths[known], mass[known]) == place]
         found[tenths[chosen]] = mass[chosen]
         return found
 
     def rate_fitting(self, rows: NDArray[np.intp]) -> None:
         """Rate sets that break no other rule, as far as they may be lighter than the second of their interval.
 
-        The lightest of each interval are looked at first, and a few of them are rated: most others are then too heavy
-        even at the least width. A set that no width makes strong enough may be lighter too: then its strength alone
-        keeps it out.
+        The lightest of each interval are looked at first. Of these, as of the others, a few are rated first: most are
+        then too heavy even at the least width. A set that no width makes strong enough may be lighter too: then its
+        strength alone keeps it out.
         """
-        tenths = self.screen.tenths[rows]
-        light = self._at_least_width_kg(rows)
-        near = _rank(tenths, light) < _NEAR
-        bounded = self._bounded(rows[near])
-        least, hopeless = bounded.least_mass_kg(self.judge), bounded.bounds.hopeless
-        first = ~hopeless & (_rank(tenths[near], np.where(hopeless, np.inf, least)) < _FIRST)
-        self.rate(bounded.where(first))
-        second = self.lightest(1)[tenths]
-        self.rate(bounded.where(~first & (least <= second[near])))
-        left = ~near & (light <= second)
-        bounded = self._bounded(rows[left])
-        self.rate(bounded.where(bounded.least_mass_kg(self.judge) <= second[left]))
+        tenths, light = self.screen.tenths[rows], self._at_least_width_kg(rows)
+        near, second = rank(tenths, light) < _NEAR, np.full(len(rows), np.inf)
+        for some in (near, ~near):
+            left = np.flatnonzero(some & (light <= second))
+            if not len(left):
+                continue
+            bounded = self._bounded(rows[left])
+            least = bounded.least_mass_kg(self.judge)
+            hopeful = np.where(bounded.bounds.hopeless, np.inf, least)
+            first = (rank(tenths[left], hopeful) < _FIRST) & np.isfinite(hopeful)
+            self.rate(bounded.where(first))
+            second = self.lightest(1)[tenths]
+            self.rate(bounded.where(~first & (least <= second[left])))
+            second = self.lightest(1)[tenths]
 
     def rate_kept_out(self, rows: NDArray[np.intp], fitting_tenths: NDArray[np.int64]) -> None:
         """Rate sets that break one other rule, where that matters.
@@ -320,7 +322,7 @@ class _Bounded:
         return judge.mass_kg(self.stage.gears, self.bounds.floor_mm)
 
 
-def _rank(groups: NDArray[np.int64], values: Floats) -> NDArray[np.intp]:
+def rank(groups: NDArray[np.int64], values: Floats) -> NDArray[np.intp]:
     """Return the place of each value among those of its group, from 0."""
     order = np.lexsort((values, groups))
     first = np.searchsorted(groups[order], groups[order])

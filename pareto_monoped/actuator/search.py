@@ -1,8 +1,7 @@
 """The exhaustive search of stage 1: every gear set, both families, the lightest in every ratio interval."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import lru_cache
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import Actuator, build_actuator
 from pareto_monoped.actuator.gearset import GearSet, joined
-from pareto_monoped.actuator.judge import Judge, candidates
+from pareto_monoped.actuator.judge import Judge, candidates, rank
 from pareto_monoped.actuator.layout import FAMILIES, Family, radial_room_mm
 from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.motors import load_motor, motor_source
@@ -22,71 +21,63 @@ from pareto_monoped.design import DEFAULT_RULES, RuleSet
 from pareto_monoped.files import kept
 
 
-def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[int, FamilyResult]:
-    """Return the two lightest sets of every interval (in tenths), and what stands in the way of better."""
+def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[str, NDArray[Any]]:
+    """Return the two lightest sets of every interval (in tenths), and what stands in the way of better.
+
+    NaN in place of sets that there are not.
+    """
     gears = candidates(radial_room_mm(motor, family, settings), settings)
     judged = Judge(motor=motor, family=family, settings=settings).judge(gears)
-    names, broken, mass, nearness = judged.names, judged.broken, judged.mass_kg, judged.nearness
+    tenths, broken, mass, nearness = judged.tenths, judged.broken, judged.mass_kg, judged.nearness
     count = broken.sum(axis=0)
-    found = {}
-    order = np.argsort(judged.tenths, kind="stable")
-    bounds = np.searchsorted(judged.tenths[order], np.arange(10 * RATIO_LOW, 10 * RATIO_HIGH + 1))
-    for low, (start, stop) in enumerate(pairwise(bounds), 10 * RATIO_LOW):
-        inside = order[start:stop]
-        allowed = inside[judged.considered[inside] & (count[inside] == 0) & np.isfinite(mass[inside])]
-        ranked = allowed[np.argsort(mass[allowed], kind="stable")][:2]
-        if len(ranked):
-            rivals = inside[judged.considered[inside] & (count[inside] == 1) & (mass[inside] < mass[ranked[0]])]
-        else:
-            rivals = inside[nearness[inside] == nearness[inside].min()] if len(inside) else inside
-        in_the_way = tuple(name for name, row in zip(names, broken[:, rivals], strict=True) if row.any())
-        best, runner_up = (
-            Candidate(
-                family=family,
-                gears=gears.chosen(ranked[place]),
-                face_width_mm=float(judged.width_mm[ranked[place]]),
-                mass_kg=float(mass[ranked[place]]),
-            )
-            if place < len(ranked)
-            else None
-            for place in range(2)
-        )
-        found[low] = FamilyResult(best=best, runner_up=runner_up, in_the_way=in_the_way)
-    return found
+    low = np.arange(10 * RATIO_LOW, 10 * RATIO_HIGH)
+    numbers = np.full((len(low), 2, len(_COUNTED + _MEASURED) + 3), np.nan)
+    allowed = np.flatnonzero(judged.considered & (count == 0) & np.isfinite(mass))
+    place = rank(tenths[allowed], mass[allowed])
+    best, place = allowed[place < 2], place[place < 2]
+    numbers[tenths[best] - low[0], place] = np.stack(
+        [
+            *(np.broadcast_to(getattr(gears, name), mass.shape)[best] for name in _COUNTED + _MEASURED),
+            np.full(len(best), gears.tips_fitted),
+            judged.width_mm[best],
+            mass[best],
+        ],
+        axis=-1,
+    )
+    lightest, nearest = np.full((2, 10 * RATIO_HIGH), np.inf)
+    lightest[low] = numbers[:, 0, -1]
+    np.minimum.at(nearest, tenths, nearness)
+    solved = np.isfinite(lightest)[tenths]
+    rivals = np.where(solved, judged.considered & (count == 1) & (mass < lightest[tenths]), nearness == nearest[tenths])
+    in_the_way = np.zeros((10 * RATIO_HIGH, len(judged.names)), dtype=bool)
+    for name, row in enumerate(broken):
+        in_the_way[tenths[rivals & row], name] = True
+    words = [" ".join(np.array(judged.names)[each]) for each in in_the_way[low]]
+    return {"low": low, "numbers": numbers, "in_the_way": np.array(words)}
 
 
 _COUNTED = ("sun_teeth", "planet_teeth", "ring_teeth", "planets")
 _MEASURED = ("module_mm", "centre_shift", "sun_shift", "backlash_mm")
 
 
-def _as_arrays(found: Mapping[int, FamilyResult]) -> dict[str, NDArray[Any]]:
-    """Return what ``_search`` found as arrays; NaN in place of sets that there are not."""
-    numbers = np.full((len(found), 2, len(_COUNTED + _MEASURED) + 3), np.nan)
-    for row, result in enumerate(found.values()):
-        for place, one in enumerate((result.best, result.runner_up)):
-            if one is not None:
-                gears = [getattr(one.gears, name) for name in _COUNTED + _MEASURED]
-                numbers[row, place] = [*gears, one.gears.tips_fitted, one.face_width_mm, one.mass_kg]
-    in_the_way = [" ".join(result.in_the_way) for result in found.values()]
-    return {"low": np.array(list(found)), "numbers": numbers, "in_the_way": np.array(in_the_way)}
-
-
 def _from_arrays(stored: Mapping[str, NDArray[Any]], family: Family) -> dict[int, FamilyResult]:
     """Return what ``_search`` found from its arrays."""
-
-    def candidate(numbers: Sequence[float]) -> Candidate | None:
-        if np.isnan(numbers[0]):
-            return None
-        *gears, fitted, width_mm, mass_kg = numbers
-        counted = {name: int(value) for name, value in zip(_COUNTED, gears, strict=False)}
-        measured = dict(zip(_MEASURED, gears[len(_COUNTED) :], strict=True))
-        found = GearSet(**counted, **measured, tips_fitted=bool(fitted))
-        return Candidate(family=family, gears=found, face_width_mm=width_mm, mass_kg=mass_kg)
-
-    rows = zip(*(stored[name].tolist() for name in ("low", "numbers", "in_the_way")), strict=True)
+    numbers = stored["numbers"]
+    places = np.argwhere(np.isfinite(numbers[..., 0]))
+    found: dict[tuple[int, int], Candidate] = {}
+    if len(places):
+        *gears, fitted, width_mm, mass_kg = numbers[tuple(places.T)].T
+        sets = GearSet(**dict(zip(_COUNTED + _MEASURED, gears, strict=True)), tips_fitted=bool(fitted[0]))
+        for index, (row, place) in enumerate(places.tolist()):
+            found[row, place] = Candidate(
+                family=family,
+                gears=sets.chosen(index),
+                face_width_mm=float(width_mm[index]),
+                mass_kg=float(mass_kg[index]),
+            )
     return {
-        low: FamilyResult(best=candidate(best), runner_up=candidate(next_best), in_the_way=tuple(names.split()))
-        for low, (best, next_best), names in rows
+        low: FamilyResult(best=found.get((row, 0)), runner_up=found.get((row, 1)), in_the_way=tuple(names.split()))
+        for row, (low, names) in enumerate(zip(stored["low"].tolist(), stored["in_the_way"].tolist(), strict=True))
     }
 
 
@@ -100,7 +91,7 @@ def build_map(motor: Motor, settings: ActuatorSettings | None = None, *, keep: b
     searched = {}
     for family in (family for family in FAMILIES if present[family]):
         key = repr(("search", family, motor, settings)) if keep else None
-        stored = kept(key, lambda family=family: _as_arrays(_search(motor, family, settings)))  # type: ignore[misc]  # a default
+        stored = kept(key, lambda family=family: _search(motor, family, settings))  # type: ignore[misc]  # a default
         searched[family] = _from_arrays(stored, family)
     pools = {}
     for low in range(10 * RATIO_LOW, 10 * RATIO_HIGH):

@@ -5,6 +5,7 @@ Millimetres.
 
 from bisect import bisect_left
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -158,6 +159,8 @@ class Limits:
     upper_mm: float
 
 
+# A map asks for the same few sizes some thousand times.
+@lru_cache(maxsize=1024)
 def limits(diameter_mm: float, zone: str) -> Limits:
     """Return the limits of a tolerance class, such as ``H7`` for a hole or ``m6`` for a shaft.
 

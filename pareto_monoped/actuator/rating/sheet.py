@@ -1,6 +1,6 @@
 """The full rating of one gear set: every stress, limit, factor and safety, as on a gear calculation sheet."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -153,101 +153,108 @@ def rate(stage: Stage, width_mm: float) -> Rating:
 
 def ratings(stage: Stage, width_mm: Numbers) -> tuple[Rating, ...]:
     """Return the ratings of all gear sets of a stage, each at its face width."""
-    sun, ring = zip(stage.loads(width_mm), stage.overloads(width_mm), strict=True)
     gears = stage.gears
     # Between the tips of neighbouring planets.
     gap_mm = 2.0 * (gears.carrier_radius_mm * np.sin(np.pi / gears.planets) - gears.planet().tip_radius_mm)
+    whole = {
+        "face_width_mm": width_mm,
+        "planet_gap_mm": gap_mm,
+        "highest_share": highest_share(stage.settings.parts.duty),
+        "overload_share": stage.overload_share,
+    }
+    loads = zip(stage.loads(width_mm), stage.overloads(width_mm), strict=True)
+    meshes = [_mesh(stage, mesh, *each) for mesh, each in zip((stage.sun_mesh, stage.ring_mesh), loads, strict=True)]
 
     def one(place: int) -> Rating:
-        def number(value: Numbers) -> float:
-            return float(value[place] if isinstance(value, np.ndarray) and value.ndim else value)
+        def at(values: dict[str, Any]) -> dict[str, Any]:
+            arrays = {
+                name: value[place] for name, value in values.items() if isinstance(value, np.ndarray) and value.ndim
+            }
+            found = {**values, **arrays}
+            return {name: value if isinstance(value, str) else float(value) for name, value in found.items()}
 
-        return Rating(
-            face_width_mm=number(width_mm),
-            planet_gap_mm=number(gap_mm),
-            highest_share=highest_share(stage.settings.parts.duty),
-            overload_share=stage.overload_share,
-            sun_mesh=_mesh(stage, stage.sun_mesh, *sun, number),
-            ring_mesh=_mesh(stage, stage.ring_mesh, *ring, number),
+        sun, ring = (
+            MeshRating(**at(mesh), pinion=GearRating(**at(pinion)), wheel=GearRating(**at(wheel)))
+            for mesh, pinion, wheel in meshes
         )
+        return Rating(**at(whole), sun_mesh=sun, ring_mesh=ring)
 
     return tuple(map(one, range(np.size(width_mm))))
 
 
-def _mesh(stage: Stage, mesh: Mesh, at: MeshLoad, over: MeshLoad, number: Callable[[Numbers], float]) -> MeshRating:
-    loads = acting(at, over)
-    return MeshRating(
-        tangential_force_n=number(mesh.force_n),
-        pitch_speed_m_per_s=number(mesh.speed_m_per_s),
-        contact_ratio=number(mesh.contact_ratio),
-        gear_ratio=number(mesh.ratio),
-        pinion_diameter_mm=number(mesh.diameter_mm),
-        zone_factor=number(zone_factor(mesh.working_angle_rad)),
-        elasticity_factor=elasticity_factor(stage.settings.materials.gear_steel),
-        contact_ratio_factor=number(contact_ratio_factor(mesh.contact_ratio)),
-        mesh_stiffness_n_per_mm_um=number(at.stiffness),
-        misalignment_um=number(at.misalignment_um),
-        pitch_deviation_um=number(mesh.pitch_deviation_um),
-        application_factor=stage.settings.parts.rating.application_factor,
-        sharing_factor=number(mesh.sharing),
-        dynamic_factor=number(at.dynamic),
-        face_load_factor=number(at.face_flank),
-        root_face_load_factor=number(at.face_root),
-        transverse_load_factor=number(at.transverse_flank),
-        root_transverse_load_factor=number(at.transverse_root),
-        overload_face_load_factor=number(over.face_flank),
-        overload_root_face_load_factor=number(over.face_root),
-        overload_transverse_load_factor=number(over.transverse_flank),
-        overload_root_transverse_load_factor=number(over.transverse_root),
-        pinion=_gear(stage, mesh, mesh.pinion, loads, number),
-        wheel=_gear(stage, mesh, mesh.wheel, loads, number),
-    )
+def _mesh(stage: Stage, mesh: Mesh, at: MeshLoad, over: MeshLoad) -> tuple[dict[str, Any], ...]:
+    """Return what a ``MeshRating`` has, and what those of its pinion and wheel have; arrays for many sets."""
+    found = {
+        "tangential_force_n": mesh.force_n,
+        "pitch_speed_m_per_s": mesh.speed_m_per_s,
+        "contact_ratio": mesh.contact_ratio,
+        "gear_ratio": mesh.ratio,
+        "pinion_diameter_mm": mesh.diameter_mm,
+        "zone_factor": zone_factor(mesh.working_angle_rad),
+        "elasticity_factor": elasticity_factor(stage.settings.materials.gear_steel),
+        "contact_ratio_factor": contact_ratio_factor(mesh.contact_ratio),
+        "mesh_stiffness_n_per_mm_um": at.stiffness,
+        "misalignment_um": at.misalignment_um,
+        "pitch_deviation_um": mesh.pitch_deviation_um,
+        "application_factor": stage.settings.parts.rating.application_factor,
+        "sharing_factor": mesh.sharing,
+        "dynamic_factor": at.dynamic,
+        "face_load_factor": at.face_flank,
+        "root_face_load_factor": at.face_root,
+        "transverse_load_factor": at.transverse_flank,
+        "root_transverse_load_factor": at.transverse_root,
+        "overload_face_load_factor": over.face_flank,
+        "overload_root_face_load_factor": over.face_root,
+        "overload_transverse_load_factor": over.transverse_flank,
+        "overload_root_transverse_load_factor": over.transverse_root,
+    }
+    return found, *(_gear(stage, mesh, member, acting(at, over)) for member in (mesh.pinion, mesh.wheel))
 
 
-def _gear(stage: Stage, mesh: Mesh, member: Member, loads: Safeties, number: Callable[[Numbers], float]) -> GearRating:
+def _gear(stage: Stage, mesh: Mesh, member: Member, loads: Safeties) -> dict[str, Any]:
     safeties = safeties_of(member.carries, loads)
     contact = contact_stress_mpa(
         loads.flank, mesh.diameter_mm, mesh.ratio, member.contact_factors, internal=mesh.internal
     )
     bending = bending_stress_mpa(loads.root, stage.gears.module_mm, member.form, member.rim_factor)
     drawn, data = getattr(stage.gears, member.gear)(), stage.settings.parts.rating
-    return GearRating(
-        gear=member.gear,
-        steel=member.steel.name,
-        treatment=member.steel.treatment,
-        quality=member.steel.quality,
-        hardness_hv=member.steel.hardness_hv,
-        tip_diameter_mm=number(2.0 * drawn.tip_radius_mm),
-        form_diameter_mm=number(2.0 * drawn.form_radius_mm),
-        root_diameter_mm=number(2.0 * drawn.root_radius_mm),
-        tip_thickness_mm=number(drawn.tip_thickness_mm),
-        contact_number_mpa=member.steel.flank_limit_mpa,
-        bending_number_mpa=member.steel.root_limit_mpa,
-        contact_stress_mpa=number(contact),
-        contact_limit_mpa=number(member.flank_limit_mpa),
-        flank_safety=number(safeties.flank),
-        bending_stress_mpa=number(bending),
-        bending_limit_mpa=number(member.root_limit_mpa),
-        root_safety=number(safeties.root),
-        overload_flank_safety=number(safeties.overload_flank),
-        overload_root_safety=number(safeties.overload_root),
-        single_contact_factor=number(member.single_contact),
-        finish_factor=finish_factor(stage.settings, internal=mesh.internal),
-        work_hardening_factor=member.work_hardening,
-        notch_sensitivity_factor=number(notch_sensitivity_factor(member.steel, member.form.notch)),
-        roughness_factor=roughness_factor(member.steel, data.root_roughness_um),
-        mean_stress_factor=number(member.bending_factor),
-        form_factor=number(member.form.form_factor),
-        stress_correction=number(member.form.stress_correction),
-        rim_factor=number(member.rim_factor),
-        flank_cycles=number(member.flank_cycles),
-        root_cycles=number(member.root_cycles),
-        flank_life_factor=number(member.flank_life),
-        root_life_factor=number(member.root_life),
-        static_flank_life_factor=FLANK_CURVES[member.steel.treatment].static_factor,
-        static_root_life_factor=ROOT_CURVES[member.steel.treatment].static_factor,
-        static_notch_factor=number(static_notch_factor(member.steel, member.form)),
-    )
+    return {
+        "gear": member.gear,
+        "steel": member.steel.name,
+        "treatment": member.steel.treatment,
+        "quality": member.steel.quality,
+        "hardness_hv": member.steel.hardness_hv,
+        "tip_diameter_mm": 2.0 * drawn.tip_radius_mm,
+        "form_diameter_mm": 2.0 * drawn.form_radius_mm,
+        "root_diameter_mm": 2.0 * drawn.root_radius_mm,
+        "tip_thickness_mm": drawn.tip_thickness_mm,
+        "contact_number_mpa": member.steel.flank_limit_mpa,
+        "bending_number_mpa": member.steel.root_limit_mpa,
+        "contact_stress_mpa": contact,
+        "contact_limit_mpa": member.flank_limit_mpa,
+        "flank_safety": safeties.flank,
+        "bending_stress_mpa": bending,
+        "bending_limit_mpa": member.root_limit_mpa,
+        "root_safety": safeties.root,
+        "overload_flank_safety": safeties.overload_flank,
+        "overload_root_safety": safeties.overload_root,
+        "single_contact_factor": member.single_contact,
+        "finish_factor": finish_factor(stage.settings, internal=mesh.internal),
+        "work_hardening_factor": member.work_hardening,
+        "notch_sensitivity_factor": notch_sensitivity_factor(member.steel, member.form.notch),
+        "roughness_factor": roughness_factor(member.steel, data.root_roughness_um),
+        "mean_stress_factor": member.bending_factor,
+        "form_factor": member.form.form_factor,
+        "stress_correction": member.form.stress_correction,
+        "rim_factor": member.rim_factor,
+        "flank_cycles": member.flank_cycles,
+        "root_cycles": member.root_cycles,
+        "flank_life_factor": member.flank_life,
+        "root_life_factor": member.root_life,
+        "static_flank_life_factor": FLANK_CURVES[member.steel.treatment].static_factor,
+        "static_root_life_factor": ROOT_CURVES[member.steel.treatment].static_factor,
+        "static_notch_factor": static_notch_factor(member.steel, member.form),
+    }
 
 
 _POSITIONS, _POINTS = 600, 3000

@@ -3,6 +3,7 @@
 from collections.abc import Collection
 from dataclasses import dataclass
 from functools import reduce
+from itertools import cycle
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,8 @@ _SCAN = 12
 """Face widths that are tried first, evenly spread between the limits."""
 _FLOOR_STEPS = 2
 """How often the floor of ``WidthBounds`` is raised: once leaves twice as many sets to rate, thrice saves no time."""
+_HALVED = (False, False, False, False, False, True)
+"""Whether a search halves the interval left instead of guessing: now and then, so that it ends soon in any case."""
 _LOAD_EXPONENTS = Safeties(2.0, 1.0, 2.0, 1.0)
 """The load that a flank carries falls with the square of its safety factor, that of a root with the factor itself."""
 STRENGTH_RULES = {
@@ -65,22 +68,25 @@ class WidthBounds:
 def width_bounds(stage: Stage, off: Collection[str] = ()) -> WidthBounds:
     """Return the bounds of arrays of gear sets; arguments as of ``least_width_mm``."""
     low, high = _limits(stage)
-    most = _margin(stage, high, off)
+    most = _margin_and_need(stage, high, off)[0]
     enough = most >= 0.0
-    hopeless = ~enough & (_margin(stage, _tried(low, high)[-2], off) < most)
-    floor = low
-    for _ in range(_FLOOR_STEPS):
-        floor = np.clip(np.ceil(np.round(floor * _shortage(stage, floor, off), 6)), floor, high)
     # Otherwise a width between the limits may be enough, and if none is, any may be the best.
-    floor = np.where(enough, floor, low)
-    return WidthBounds(floor_mm=_in_mm(np.where(hopeless, high, floor), stage), enough=enough, hopeless=hopeless)
+    floor, hopeless, before = low.copy(), ~enough, _tried(low, high)[-2]
+    rows = np.flatnonzero(~enough)
+    hopeless[rows] = _margin_and_need(stage.rows(rows), before[rows], off)[0] < most[rows]
+    floor[hopeless] = high[hopeless]
+    rows, part = np.flatnonzero(enough), stage.rows(enough)
+    for _ in range(_FLOOR_STEPS):
+        needed = np.ceil(np.round(_margin_and_need(part, floor[rows], off)[1], 6))
+        floor[rows] = np.clip(needed, floor[rows], high[rows])
+    return WidthBounds(floor_mm=_in_mm(floor, stage), enough=enough, hopeless=hopeless)
 
 
 def least_width_mm(stage: Stage, off: Collection[str] = (), bounds: WidthBounds | None = None) -> Floats:
     """Return the least multiple of the step at which all safety factors are kept.
 
     Where the largest width is not enough, but safety no longer grows there, a few widths are tried first, to find the
-    part where it grows. Bisection then finds the first width that is enough.
+    part where it grows. Guesses from what is needed then close in on the first width that is enough.
 
     ``off``: names of rules that need not be kept.
 
@@ -98,34 +104,43 @@ def least_width_mm(stage: Stage, off: Collection[str] = (), bounds: WidthBounds 
         good[between], bad[between], best[between] = found
     # Invariant: enough at good, not enough at bad (or below the limit). Sets without any good width stay out.
     left = np.flatnonzero(good - bad > 1.0)
-    part = stage.rows(left)
-    while len(left):
-        middle = np.floor(0.5 * (good[left] + bad[left]))
-        fits = (_margin(part, middle, off) >= 0.0) & (middle >= low[left])
-        good[left], bad[left] = np.where(fits, middle, good[left]), np.where(fits, bad[left], middle)
+    part, tried = stage.rows(left), bad[left] + 1.0
+    before = needed_before = np.full(len(left), np.nan)
+    for halve in cycle(_HALVED):
+        if not len(left):
+            break
+        margin, needed = _margin_and_need(part, tried, off)
+        fits = margin >= 0.0
+        good[left], bad[left] = np.where(fits, tried, good[left]), np.where(fits, bad[left], tried)
+        # Where what is needed meets the width, if it goes on growing as it did.
+        growth = np.where(tried != before, (needed - needed_before) / (tried - before), 0.0)
+        growth = np.where(growth < 1.0, growth, 0.0)
+        guess = tried + (needed - tried) / (1.0 - growth)
+        before, needed_before = tried, needed
         wide = good[left] - bad[left] > 1.0
         left, part = left[wide], part if wide.all() else part.rows(wide)
+        guess, before, needed_before = guess[wide], before[wide], needed_before[wide]
+        if halve:
+            guess = 0.5 * (good[left] + bad[left])
+        tried = np.clip(np.ceil(guess), bad[left] + 1.0, good[left] - 1.0)
     return _in_mm(np.where(np.isfinite(good), good, best), stage).reshape(shape)
 
 
-def _margin(stage: Stage, steps: Floats, off: Collection[str]) -> Floats:
-    """Return the least margin of strength at widths in steps."""
-    margins = strength_margins(stage.safeties(steps * stage.settings.parts.rating.face_step_mm), stage)
-    kept = [value for rule, value in margins.items() if rule not in off]
-    return np.asarray(reduce(np.minimum, kept)) if kept else np.full(steps.shape, np.inf)
+def _margin_and_need(stage: Stage, steps: Floats, off: Collection[str]) -> tuple[Floats, Floats]:
+    """Return the least margin of strength at widths in steps, and what the worst flank or root needs at least.
 
-
-def _shortage(stage: Stage, steps: Floats, off: Collection[str]) -> Floats:
-    """Return the load at a width over the one carried with the safety required, of the worst flank or root."""
-    found = stage.safeties(steps * stage.settings.parts.rating.face_step_mm)
-    least = required(stage.settings)
+    That is the width times the load over the one carried with the safety required.
+    """
+    found, least = stage.safeties(steps * stage.settings.parts.rating.face_step_mm), required(stage.settings)
+    margins = [value for rule, value in strength_margins(found, stage).items() if rule not in off]
     shares = [
         (getattr(least, name) / getattr(found, name)) ** getattr(_LOAD_EXPONENTS, name)
         for rule, names in STRENGTH_RULES.items()
         if rule not in off
         for name in names
     ]
-    return reduce(np.maximum, shares, np.zeros(steps.shape))
+    margin = np.asarray(reduce(np.minimum, margins)) if margins else np.full(steps.shape, np.inf)
+    return margin, steps * reduce(np.maximum, shares, np.zeros(steps.shape))
 
 
 def _limits(stage: Stage) -> tuple[Floats, Floats]:
@@ -156,7 +171,7 @@ def _scanned(stage: Stage, low: Floats, high: Floats, off: Collection[str]) -> t
     left, part = np.arange(len(low)), stage
     for widths in _tried(low, high):
         tried = widths[left]
-        found = _margin(part, tried, off)
+        found = _margin_and_need(part, tried, off)[0]
         enough = found >= 0.0
         good[left[enough]] = tried[enough]
         if enough.any():

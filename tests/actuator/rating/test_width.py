@@ -143,11 +143,10 @@ def test_a_part_of_the_widths_may_be_enough(monkeypatch):
     def peak(some):
         return 12.0 * some.gears.planet_teeth
 
-    def margin(some, steps, off):
-        return some.gears.planets - 3.5 - np.square((steps - peak(some)) / 200.0)
+    def margin_and_need(some, steps, off):
+        return some.gears.planets - 3.5 - np.square((steps - peak(some)) / 200.0), steps
 
-    monkeypatch.setattr(width_module, "_margin", margin)
-    monkeypatch.setattr(width_module, "_shortage", lambda some, steps, off: np.ones(len(steps)))
+    monkeypatch.setattr(width_module, "_margin_and_need", margin_and_need)
     bounds, found = width_bounds(stage), np.round(least_width_mm(stage) / 0.1)
     reach = 200.0 * np.sqrt(np.maximum(stage.gears.planets - 3.5, 0.0))
     first = np.maximum(np.ceil(peak(stage) - reach - 1e-9), low)
