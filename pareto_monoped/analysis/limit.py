@@ -59,7 +59,7 @@ LAW = TorqueOverTime(kind="torque_over_time", knots=MOST_KNOTS)
 TRACKING = Tracking(kind="tracking", knots=MOST_KNOTS)
 """The law that is to survive delay and other motors."""
 JUMPS = 3000
-"""Jumps of each of the four searches of a design. Our own choice: 18 to 20 s per design on two cores."""
+"""Jumps of each of the four searches of a design. Our own choice: 14 to 20 s per design on two cores."""
 MOST_DESIGNS = 12
 """Designs of a front, thinned evenly, if none are named. Our own choice: some minutes on two cores."""
 _POPULATION, _FEW = 12, 6
