@@ -32,7 +32,11 @@ class _Cuts(NamedTuple):
     ring: Numbers
 
 
-_COUNTS, _SHIFTS = ("sun_teeth", "planet_teeth", "ring_teeth", "planets"), ("centre_shift", "sun_shift")
+COUNTED, MEASURED = (
+    ("sun_teeth", "planet_teeth", "ring_teeth", "planets"),
+    ("module_mm", "centre_shift", "sun_shift", "backlash_mm"),
+)
+"""The whole numbers and the others by which a gear set is told from those of the same search."""
 _UNSHIFTED = _Shifts(PRESSURE_ANGLE_RAD, PRESSURE_ANGLE_RAD, 0.0, 0.0)
 FORM_MARGIN_MODULES = 0.02
 """From where a flank begins, or ends in a ring, to where its mate's tip reaches, along the radius: our own choice."""
@@ -155,10 +159,8 @@ class GearSet:
 
     def chosen(self, index: int) -> "GearSet":
         """Return one set out of arrays, with plain numbers."""
-        numbers: dict[str, Any] = {
-            name: float(self._spread(getattr(self, name))[index]) for name in ("module_mm", "backlash_mm", *_SHIFTS)
-        }
-        teeth: dict[str, Any] = {name: int(np.asarray(getattr(self, name))[index]) for name in _COUNTS}
+        numbers: dict[str, Any] = {name: float(self._spread(getattr(self, name))[index]) for name in MEASURED}
+        teeth: dict[str, Any] = {name: int(np.asarray(getattr(self, name))[index]) for name in COUNTED}
         one = GearSet(**teeth, **numbers)
         # Known already, and dear.
         object.__setattr__(one, "tips_fitted", self.tips_fitted)

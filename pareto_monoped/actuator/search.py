@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.actuator.actuator import Actuator, build_actuator
-from pareto_monoped.actuator.gearset import GearSet, joined
+from pareto_monoped.actuator.gearset import COUNTED, MEASURED, GearSet, joined
 from pareto_monoped.actuator.judge import Judge, candidates, rank
 from pareto_monoped.actuator.layout import FAMILIES, Family, radial_room_mm
 from pareto_monoped.actuator.motor import Motor
@@ -22,22 +22,22 @@ from pareto_monoped.files import kept
 
 
 def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[str, NDArray[Any]]:
-    """Return the two lightest sets of every interval (in tenths), and what stands in the way of better.
+    """Return, as arrays, the two lightest sets of every interval (in tenths), and what stands in the way of better.
 
-    NaN in place of sets that there are not.
+    Where an interval has fewer sets, their numbers are NaN.
     """
     gears = candidates(radial_room_mm(motor, family, settings), settings)
     judged = Judge(motor=motor, family=family, settings=settings).judge(gears)
     tenths, broken, mass, nearness = judged.tenths, judged.broken, judged.mass_kg, judged.nearness
     count = broken.sum(axis=0)
     low = np.arange(10 * RATIO_LOW, 10 * RATIO_HIGH)
-    numbers = np.full((len(low), 2, len(_COUNTED + _MEASURED) + 3), np.nan)
+    numbers = np.full((len(low), 2, len(COUNTED + MEASURED) + 3), np.nan)
     allowed = np.flatnonzero(judged.considered & (count == 0) & np.isfinite(mass))
     place = rank(tenths[allowed], mass[allowed])
     best, place = allowed[place < 2], place[place < 2]
     numbers[tenths[best] - low[0], place] = np.stack(
         [
-            *(np.broadcast_to(getattr(gears, name), mass.shape)[best] for name in _COUNTED + _MEASURED),
+            *(np.broadcast_to(getattr(gears, name), mass.shape)[best] for name in COUNTED + MEASURED),
             np.full(len(best), gears.tips_fitted),
             judged.width_mm[best],
             mass[best],
@@ -56,10 +56,6 @@ def _search(motor: Motor, family: Family, settings: ActuatorSettings) -> dict[st
     return {"low": low, "numbers": numbers, "in_the_way": np.array(words)}
 
 
-_COUNTED = ("sun_teeth", "planet_teeth", "ring_teeth", "planets")
-_MEASURED = ("module_mm", "centre_shift", "sun_shift", "backlash_mm")
-
-
 def _from_arrays(stored: Mapping[str, NDArray[Any]], family: Family) -> dict[int, FamilyResult]:
     """Return what ``_search`` found from its arrays."""
     numbers = stored["numbers"]
@@ -67,7 +63,7 @@ def _from_arrays(stored: Mapping[str, NDArray[Any]], family: Family) -> dict[int
     found: dict[tuple[int, int], Candidate] = {}
     if len(places):
         *gears, fitted, width_mm, mass_kg = numbers[tuple(places.T)].T
-        sets = GearSet(**dict(zip(_COUNTED + _MEASURED, gears, strict=True)), tips_fitted=bool(fitted[0]))
+        sets = GearSet(**dict(zip(COUNTED + MEASURED, gears, strict=True)), tips_fitted=bool(fitted[0]))
         for index, (row, place) in enumerate(places.tolist()):
             found[row, place] = Candidate(
                 family=family,
