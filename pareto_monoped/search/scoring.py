@@ -2,14 +2,17 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pareto_monoped.definition.goals import Constraints
-from pareto_monoped.jump.evaluate import Evaluations
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 from pareto_monoped.search.algorithm import Scores
+
+if TYPE_CHECKING:
+    from pareto_monoped.jump.evaluate import Evaluations
 
 FAILED_VIOLATION = 100.0
 """Violation of a failed jump in each constraint: so large that it ranks behind jumps that only miss a limit."""
@@ -27,7 +30,9 @@ class Judgement:
     violation: NDArray[np.float64]  #: sum of the positive ``constraints``, shape (n,)
 
 
-def judge(evaluations: Evaluations, constraints: Constraints, objectives: Objectives = HEIGHT_AND_ENERGY) -> Judgement:
+def judge(
+    evaluations: "Evaluations", constraints: Constraints, objectives: Objectives = HEIGHT_AND_ENERGY
+) -> Judgement:
     """Judge evaluations by a study's constraints.
 
     A jump failed if its status says so, or if its height, its energy or an objective is not a finite number. The
@@ -60,12 +65,12 @@ def missed(
     return table
 
 
-def values_of(evaluations: Evaluations, objectives: Objectives) -> NDArray[np.float64]:
+def values_of(evaluations: "Evaluations", objectives: Objectives) -> NDArray[np.float64]:
     """Return the objectives' values in stored units, shape (n, m)."""
     return np.column_stack([evaluations.of(name) for name in objectives.names])
 
 
-def scores(evaluations: Evaluations, judgement: Judgement, objectives: Objectives = HEIGHT_AND_ENERGY) -> Scores:
+def scores(evaluations: "Evaluations", judgement: Judgement, objectives: Objectives = HEIGHT_AND_ENERGY) -> Scores:
     """Return what a search algorithm may know about these evaluations."""
     return Scores(
         objectives=objectives,

@@ -111,7 +111,7 @@ def _typed(values: tuple[Any, ...], dtype: str) -> Any:
         return pd.array(shared, dtype="str")
     if dtype == "int64":
         return np.array(values, dtype=np.int64)
-    return np.array([np.nan if value is None else value for value in values], dtype=np.float64)
+    return np.array(values, dtype=np.float64)  # None becomes NaN
 
 
 def with_motors(trials: pd.DataFrame, study: Study, meta: StudyMeta, db: StudyPlace) -> pd.DataFrame:
