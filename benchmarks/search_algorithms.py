@@ -223,6 +223,15 @@ def cell(values: list[float] | None, scale: float = 100.0) -> str:
     return f"{middle:.2f} ({low:.2f} to {high:.2f})"
 
 
+def best_first(results: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
+    """The contenders' rows, by their greatest median hypervolume, in whatever order they ran."""
+
+    def best_median(item: tuple[str, dict[str, Any]]) -> float:
+        return max((statistics.median(volumes) for volumes in item[1]["volumes"].values()), default=0.0)
+
+    return sorted(results["rows"].items(), key=best_median, reverse=True)
+
+
 def table(results: dict[str, Any], best: NDArray[np.float64], corner: ReferencePoint, *, wall: bool) -> str:
     """The table of shares in Markdown, with times by the clock if asked."""
     whole, objectives = hypervolume(best, corner), corner.objectives
@@ -232,12 +241,7 @@ def table(results: dict[str, Any], best: NDArray[np.float64], corner: ReferenceP
         + f" | epsilon % | IGD+ % | own s / 1,000 |{' wall s / 1,000 |' if wall else ''}",
         "|---|" + "---|" * (len(MARKS) + 3 + wall),
     ]
-
-    def best_median(item: tuple[str, dict[str, Any]]) -> float:
-        return max((statistics.median(volumes) for volumes in item[1]["volumes"].values()), default=0.0)
-
-    rows = sorted(results["rows"].items(), key=best_median, reverse=True)
-    for name, row in rows:
+    for name, row in best_first(results):
         fronts = [np.array(front) for front in row["fronts"]]
         cells = [cell(row["volumes"].get(str(mark)), 100.0 / whole) for mark in MARKS]
         cells += [cell([measure(front, best, objectives) for front in fronts]) for measure in (epsilon, igd_plus)]
@@ -257,7 +261,7 @@ def least_at_heights(results: dict[str, Any], best: NDArray[np.float64]) -> str:
     heights = [height for height in HEIGHTS_M if np.isfinite(least(best, height))]
     lines = ["| percent above the best known at | " + " | ".join(f"{h:g} m" for h in heights) + " |"]
     lines += ["|---|" + "---|" * len(heights)]
-    for name, row in results["rows"].items():
+    for name, row in best_first(results):
         fronts = [np.array(front) for front in row["fronts"]]
         cells = [cell([least(front, h) / least(best, h) - 1.0 for front in fronts]) for h in heights]
         lines.append(f"| {name}, {row['evaluations']:,} | " + " | ".join(cells) + " |")
