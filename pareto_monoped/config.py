@@ -56,6 +56,11 @@ def read_toml(path: Path, *, what: str, error: type[InputError] = InputError) ->
         raise error(f"{source}: cannot be read ({problem.strerror}); give a readable TOML file") from None
     except ValueError:  # a zero byte in its name
         raise error(f"{source}: cannot be the name of a file; check the path") from None
+    if content.startswith(SQLITE):
+        raise error(
+            f"{source}: is a database, not a TOML file; give the TOML file, or go on with the study in it: "
+            "'resume', load_study"
+        )
     if len(content) > MAX_TOML_BYTES:
         raise error(f"{source}: has more than {MAX_TOML_BYTES} bytes; give a TOML file")
     try:
@@ -63,11 +68,6 @@ def read_toml(path: Path, *, what: str, error: type[InputError] = InputError) ->
     except RecursionError:
         raise error(f"{source}: is nested beyond reason; correct it") from None
     except UnicodeDecodeError as problem:
-        if content.startswith(SQLITE):
-            raise error(
-                f"{source}: is a database, not a TOML file; give the TOML file, or go on with the study in it: "
-                "'resume', load_study"
-            ) from None
         raise error(f"{source}: is no text in UTF-8 (byte {problem.start}); give a TOML file, saved as UTF-8") from None
     except ValueError as problem:  # not TOML, or a number of too many digits
         raise error(f"{source}: not valid TOML ({problem}); correct that line") from None

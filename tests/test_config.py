@@ -109,6 +109,8 @@ def test_a_complaint_of_a_records_own_ends_with_one_cure():
         (b"\xff\xfe", "no text in UTF-8"),
         # The codec's own words on it named a byte and told to correct a line.
         (b"SQLite format 3\x00\x10\x00\x02\x02\xfb", "is a database, not a TOML file; .* 'resume', load_study"),
+        # Only its size was named.
+        (b"SQLite format 3\x00" + bytes(MAX_TOML_BYTES), "is a database, not a TOML file"),
         (b"a = 'x", "not valid TOML"),
         (b"#" * (MAX_TOML_BYTES + 1), f"has more than {MAX_TOML_BYTES} bytes"),
     ],

@@ -221,7 +221,7 @@ def default_pick(data: StudyData, studies: Sequence[StudyData]) -> Pick:
     picked = pick(rows, chooser, objectives, able) if able.any() else plain
     if picked.trial == plain.trial:
         return plain
-    return replace(picked, why=f"{picked.why}, of the designs below {DEAR:g} times the least battery energy")
+    return replace(picked, why=f"of the designs below {DEAR:g} times the least battery energy, {picked.why}")
 
 
 Notify = Callable[[str], None]

@@ -301,8 +301,11 @@ def _numbered(rows: "DataFrame", fits: NDArray[np.bool_], inside: NDArray[np.boo
     found = np.flatnonzero((trials == number) & fits)
     if len(found):
         return int(found[0])
-    where = "be on the front, which has" if fits.all() else "be on the front and meet the conditions, as do"
-    raise SelectionError(f"trial = {number}: must {where} trials {_listed(trials[inside])}; pick one of them")
+    which = "" if fits.all() else " that meets the conditions"
+    known = _listed(trials[inside])
+    raise SelectionError(
+        f"trial = {number}: must be a feasible design{which}, such as trials {known} on the front; pick one of them"
+    )
 
 
 def _listed(trials: NDArray[np.int64], most: int = 8) -> str:

@@ -125,7 +125,7 @@ def test_pick(db, capsys, selector, trial, word):
         (["--weights", "nan,1"], "nan,1"),
         (["--min-height", "nan"], "finite"),
         (["--min-height", "2"], "met with min-height = 1.1 m (0.9 m less)"),
-        (["--trial", "1"], "must be on the front"),
+        (["--trial", "1"], "must be a feasible design"),
         (["--trial", "-1"], "-1"),
         (["--min", "mass=4"], "did you mean 'mass_kg'?"),
         (["--max", "mass_kg"], "with a number"),
