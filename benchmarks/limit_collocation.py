@@ -194,7 +194,9 @@ def least_energy(design: Design, calibration: Calibration, height_m: float) -> f
     opti.set_initial(u1, along(seen[: left + 1, 12:14], 2 * n + 1))
     opti.set_initial(q2, along(seen[left:, :4], 2 * m + 1))
     opti.set_initial(v2, along(seen[left:, 4:8], 2 * m + 1))
-    opti.solver("ipopt", {"expand": True, "print_time": False}, {"print_level": 0, "max_iter": 3000, "tol": 1e-6})
+    # "sb": no banner, which would stand within the table.
+    quiet = {"print_level": 0, "sb": "yes"}
+    opti.solver("ipopt", {"expand": True, "print_time": False}, quiet | {"max_iter": 3000, "tol": 1e-6})
     try:
         return float(opti.solve().value(energy))
     except RuntimeError:
