@@ -274,7 +274,7 @@ def test_the_greatest_shortfall_decides_which_design_is_nearest():
         (Compromise(values=(1.0,)), ["compromise = 1", "two finite numbers"]),
         (
             Among(conditions=(Condition(name="mass_kg", side="max", value=4.1),), chooser=Trial(number=2)),
-            ["trial = 2", "meet the conditions", "1, 3"],
+            ["trial = 2", "meets the conditions", "1, 3"],
         ),
         (
             Among(conditions=(Condition(name="knee_ratio", side="min", value=7.0),)),
