@@ -301,10 +301,10 @@ def _numbered(rows: "DataFrame", fits: NDArray[np.bool_], inside: NDArray[np.boo
     found = np.flatnonzero((trials == number) & fits)
     if len(found):
         return int(found[0])
-    which = "" if fits.all() else " that meets the conditions"
-    known = _listed(trials[inside])
+    meets = "" if fits.all() else " and meets the conditions"
     raise SelectionError(
-        f"trial = {number}: must be a feasible design{which}, such as trials {known} on the front; pick one of them"
+        f"trial = {number}: must be a feasible design that passes its audit{meets}, such as trials "
+        f"{_listed(trials[inside])} on the front; pick one of them"
     )
 
 
