@@ -221,7 +221,8 @@ def default_pick(data: StudyData, studies: Sequence[StudyData]) -> Pick:
     picked = pick(rows, chooser, objectives, able) if able.any() else plain
     if picked.trial == plain.trial:
         return plain
-    return replace(picked, why=f"of the designs below {DEAR:g} times the least battery energy, {picked.why}")
+    named, _, why = picked.why.partition(": ")
+    return replace(picked, why=f"{named}: of the designs below {DEAR:g} times the least battery energy, {why}")
 
 
 Notify = Callable[[str], None]

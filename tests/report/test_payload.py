@@ -49,6 +49,9 @@ def test_first_pick_is_the_knee_of_the_pick_command(payload, data):
     by_name = {one.name: card.trials.trial[one.row] for one in card.picks}
     assert by_name["knee"] == pick(data.front(), Knee()).trial
     assert card.trials.trial[card.picks[0].row] == default_pick(data, [data]).trial != by_name["knee"]
+    why = default_pick(data, [data]).why
+    assert why.startswith("trial ")
+    assert "): of the designs below 1.5 times the least battery energy, the knee, " in why
 
 
 def test_masses_of_the_bodies_add_up_to_the_simulated_robot(payload):
