@@ -31,16 +31,16 @@ def states(all_of_them):
 def test_equal_to_studies_run_alone_also_with_other_shares_and_after_being_stopped(tmp_path, monkeypatch):
     """Two studies have a thread each; the longer one gets both once it is alone, however little time is left."""
     monkeypatch.setattr(coordinator, "WORTH_S", 0.0)
-    # With 500 jumps the longer one still runs when the other process, which may start a second later, has ended.
-    several = standings(tmp_path, "evaluations = [20, 500]", SMALL.replace("audit", "strength = false\naudit"))
+    # With 1000 jumps the longer one still runs when the other process, which may start a second later, has ended.
+    several = standings(tmp_path, "evaluations = [20, 1000]", SMALL.replace("audit", "strength = false\naudit"))
     seen = []
     assert run_campaign(
         several, cores=2, changed=lambda one: seen.append((one.name, one.threads)), notify=lambda _: None
     )
     assert set(states(several).values()) == {"finished"}
-    assert seen[0] == ("jumps500", 1)  # the longest begins first
+    assert seen[0] == ("jumps1000", 1)  # the longest begins first
     threads = {name: {count for other, count in seen if other == name} - {0} for name, _ in seen}
-    assert threads == {"jumps20": {1}, "jumps500": {1, 2}}
+    assert threads == {"jumps20": {1}, "jumps1000": {1, 2}}
     for one in several:
         alone = tmp_path / f"{one.name}.db"
         run(one.place.study, alone, workers=1)
