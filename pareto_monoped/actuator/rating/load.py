@@ -168,10 +168,10 @@ def _reach(mean: Floats, above: Floats, below: Floats, above_cubed: Floats, belo
     for _ in range(_REACH_STEPS // 2):
         before = reach
         for _ in range(2):
-            up, down = np.minimum(reach, above), np.minimum(reach, below)
-            cubes = np.where(reach < above, cubed, above_cubed) + np.where(reach < below, cubed, below_cubed)
-            carried = np.square(reach) * (up + down) - cubes / 3.0
-            reach = np.maximum(reach - (carried - mean) / (2.0 * reach * (up + down)), 1e-6)
+            both = np.minimum(reach, above) + np.minimum(reach, below)
+            cubes = np.minimum(cubed, above_cubed) + np.minimum(cubed, below_cubed)
+            carried = np.square(reach) * both - cubes / 3.0
+            reach = np.maximum(reach - (carried - mean) / (2.0 * reach * both), 1e-6)
             cubed = reach**3
         found[left] = reach
         moving = reach != before

@@ -148,17 +148,18 @@ class Stage:
         """Return the loads of both meshes under ``share`` times the peak torque in gears that stand still, K_A 1."""
         return self._loads(width_mm, share, moving=False)
 
-    def _loads(self, width_mm: Numbers, factor: Numbers, *, moving: bool) -> tuple[MeshLoad, MeshLoad]:
+    def _loads(
+        self, width_mm: Numbers, factor: Numbers, *, moving: bool | NDArray[np.bool_]
+    ) -> tuple[MeshLoad, MeshLoad]:
         """Return the loads at ``factor`` times the peak torque. The planet's tilt on its pin misaligns both meshes."""
         data, materials = self.settings.parts.rating, self.settings.materials
         meshes = (self.sun_mesh, self.ring_mesh)
         applied = [factor * mesh.sharing * mesh.force_n / width_mm for mesh in meshes]
-        dynamic: list[Numbers] = [1.0, 1.0]
-        if moving:
-            dynamic = [
-                load.dynamic_factor(w, mesh.speed_m_per_s, mesh.pinion_teeth, mesh.ratio, data.accuracy_class)
-                for mesh, w in zip(meshes, applied, strict=True)
-            ]
+        grade = data.accuracy_class
+        dynamic: list[Numbers] = [
+            np.where(moving, load.dynamic_factor(w, mesh.speed_m_per_s, mesh.pinion_teeth, mesh.ratio, grade), 1.0)[()]
+            for mesh, w in zip(meshes, applied, strict=True)
+        ]
         mean = [w * k for w, k in zip(applied, dynamic, strict=True)]
         stiff = [
             load.mesh_stiffness(mesh.pair_stiffness, mesh.contact_ratio, w)
@@ -200,11 +201,17 @@ class Stage:
         return MeshLoad(mean, dynamic, face, root_face, flank, root, stiffness, left_um)
 
     def safeties(self, width_mm: Numbers) -> Safeties:
-        """Return the least safety factors of all flanks and roots at a face width."""
-        both = [
-            safeties_of(carried, acting(duty, over))
-            for carried, duty, over in zip(self.carried, self.loads(width_mm), self.overloads(width_mm), strict=True)
-        ]
+        """Return the least safety factors of all flanks and roots at a face width.
+
+        ``loads`` and ``overloads`` in one pass: the search asks for them so often that the number of calls counts.
+        """
+        each = (2, *(1,) * np.ndim(width_mm))
+        factor = np.reshape([self.settings.parts.rating.application_factor, self.overload_share], each)
+        both = []
+        loads = self._loads(width_mm, factor, moving=np.reshape([True, False], each))
+        for carried, found in zip(self.carried, loads, strict=True):
+            flank, root = np.asarray(found.flank_n_per_mm), np.asarray(found.root_n_per_mm)
+            both.append(safeties_of(carried, Safeties(flank[0], root[0], flank[1], root[1])))
         return Safeties(*map(np.minimum, *both))
 
     def static_safeties(self, width_mm: Numbers, share: Numbers) -> tuple[Numbers, Numbers]:
