@@ -11,7 +11,7 @@ from tests.lazily import Lazily
 nbformat, nbclient, jupyter = Lazily("nbformat"), Lazily("nbclient"), Lazily("jupyter_client")
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "notebooks").glob("*.ipynb"))
 SHOWS = {
-    "tour": {"1.05  ": 1, "robot: 4.77 kg": 1, "feasible": 1, "the knee": 1, "own_load_factor": 1, "(400, ": 1},
+    "tour": {"1.06  ": 1, "robot: 4.50 kg": 1, "feasible": 1, "the knee": 1, "own_load_factor": 1, "(400, ": 1},
     "own_motor": {"N m/A": 2, "g  ESSPG": 3, "J from the battery": 2, "the knee": 1, "Rating after ISO 6336": 1},
 }
 """Notebook -> words that its outputs have, and how often at least."""
