@@ -57,10 +57,10 @@ def compare(found, path):
         lines = (f" {json.dumps(name)}: {json.dumps(value)}" for name, value in found.items())
         path.write_text("{\n" + ",\n".join(lines) + "\n}\n")
     expected = json.loads(path.read_text())
-    assert list(found) == list(expected)
+    assert list(found) == list(expected), set(found) ^ set(expected)
     wrong = {
         name: (value, expected[name])
         for name, value in found.items()
         if value[::2] != expected[name][::2] or not np.isclose(value[1], expected[name][1], rtol=2e-10)
     }
-    assert not wrong
+    assert not wrong, wrong
