@@ -91,6 +91,18 @@ def test_a_failed_check_names_the_parts_and_writes_nothing(unchecked, monkeypatc
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize(("count", "more"), [(3, ""), (4, " (and 1 more)"), (6, " (and 3 more)")])
+def test_a_failed_check_counts_the_failures_that_it_does_not_name(
+    count, more, unchecked, monkeypatch, actuator_map, calibration, tmp_path
+):
+    failures = tuple(f"failure {k}" for k in range(count))
+    failed = Check(name="some", looked_at="", measured=1.0, limit=0.0, unit="mm", failures=failures)
+    monkeypatch.setattr(export, "run_checks", lambda *_, **__: (failed,))
+    with pytest.raises(CheckError) as raised:
+        export_design(DESIGN, actuator_map, calibration, tmp_path / "robot", formats=())
+    assert str(raised.value).endswith(f": failure 0; failure 1; failure 2{more}; nothing was written")
+
+
 def test_a_failure_while_writing_leaves_nothing(unchecked, monkeypatch, actuator_map, calibration, tmp_path):
     def full(*_):
         raise OSError(28, "No space left on device")

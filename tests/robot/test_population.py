@@ -112,6 +112,11 @@ def test_options_set_what_they_name(designs, actuator_map, buildable):
     np.testing.assert_allclose(changed.body_mass_kg[:, 2], expected, rtol=1e-9)
     assert np.all(changed.foot_radius_m == 0.03)
     np.testing.assert_allclose(changed.armature_kg_m2, 2e-5 * plain.ratio**2, rtol=1e-12)
+    # What is coupled beyond the chain's own is the rotor at its speed, and nothing is left over.
+    half = robot_arrays(designs[buildable], actuator_map, MassOptions(rotor_inertia_kg_m2=1e-5))
+    coupled = changed.knee_coupling_kg_m2 - half.knee_coupling_kg_m2
+    np.testing.assert_allclose(coupled, 1e-5 * plain.ratio[:, 1], rtol=1e-9)
+    assert not changed.rotor_excess_kg_m2.any()
 
 
 def test_link_scale_touches_links_only(designs, actuator_map, buildable):

@@ -8,9 +8,10 @@ import pytest
 import shapely
 
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.cad.drawing.bores import bores, number
+from pareto_monoped.cad.drawing.bores import Bore, bores, number
 from pareto_monoped.cad.drawing.dimension import FRAME_MM
 from pareto_monoped.cad.drawing.drawings import pdf
+from pareto_monoped.cad.drawing.end_view import _pointed, draw_bore
 from pareto_monoped.cad.drawing.paper import TIMES, Paper, overlapping
 from pareto_monoped.cad.drawing.part_sheet import part_sheet, round_part
 from pareto_monoped.cad.drawing.plan import is_square, plan_of, repeats, rounded_rectangle
@@ -23,6 +24,7 @@ from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.geometry.features import Cone, Hole, ShaftEnd
 from pareto_monoped.geometry.gears import InternalGear
 from pareto_monoped.geometry.roles import Role
+from pareto_monoped.geometry.shapes import Pattern
 from pareto_monoped.robot.build import build_robot
 from tests.cad.drawing.crossings import crossed
 from tests.cad.signed import of_pdf
@@ -73,6 +75,28 @@ def test_no_text_stands_on_another_nor_leaves_the_frame(sheets):
             x0, y0, x1, y1 = label.box()
             inside = x0 > 20.0 and y0 > MARGIN_MM and x1 < size.width_mm - MARGIN_MM and y1 < size.height_mm - MARGIN_MM
             assert inside, (part.name, label.text)
+
+
+class Circles(Paper):
+    """A paper that knows the centres of its circles."""
+
+    def __init__(self):
+        super().__init__()
+        self.centres = []
+
+    def circle(self, x, y, radius, **_):
+        self.centres.append((round(x, 6), round(y, 6)))
+
+
+@pytest.mark.parametrize("from_above", [True, False])
+def test_a_leader_ends_at_a_hole_that_is_drawn_also_in_a_view_from_below(from_above):
+    """Holes that are not symmetric left and right stand on the other side there."""
+    three = Pattern(radius_mm=2.0, pitch_radius_mm=20.0, count=3, phase_rad=0.1, x_mm=1.0)
+    holes = Bore(shape=three, low=0.0, high=4.0, through=True, feature=None, fit=None)
+    paper = Circles()
+    draw_bore(paper, holes, 1.0, visible=True, from_above=from_above)
+    ((x, y),) = _pointed([holes], 1.0, from_above)
+    assert (round(float(x), 6), round(float(y), 6)) in paper.centres[:3]
 
 
 @pytest.mark.parametrize("sheets", ROBOTS[:1], ids=str, indirect=True)
