@@ -247,3 +247,14 @@ def test_peak_speeds_and_clearance_are_those_of_the_flight_too():
     CONTROL(qpos, qvel, np.zeros(2), record)
     assert record["status"] == controller.APEX
     assert record["clearance_m"] == pytest.approx(1.0 + foot(-0.6, 1.2)[1] - RADIUS)
+
+
+@pytest.mark.parametrize(("height_m", "hip", "sinks"), [(0.3, 0.9, False), (0.3, 0.6, True), (0.09, 1.5, True)])
+def test_a_landing_sinks_where_base_or_knee_meets_the_floor(height_m, hip, sinks):
+    """The knee hangs a thigh's length below the base, and is as low as the foot's radius there."""
+    record = np.zeros(1, dtype=RECORD)[0]
+    record["thigh_length_m"], record["foot_radius_m"], record["step_limit"] = THIGH, RADIUS, 3000
+    knee_low = height_m - THIGH * np.cos(hip) < RADIUS
+    assert sinks == (knee_low or height_m < 0.1)
+    controller._end_landing(np.array([0.0, height_m, hip, -1.2]), np.array([0.0, -1.0, 0.0, 0.0]), record)
+    assert record["status"] == (controller.SANK if sinks else controller.RUNNING)

@@ -14,9 +14,9 @@ from pareto_monoped.actuator.ratiomap import JointMaps
 from pareto_monoped.actuator.search import build_map, map_for
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.compute.chunks import Pace
-from pareto_monoped.design import LOWER, UPPER, complete
+from pareto_monoped.design import LOWER, NAMES, UPPER, complete
 from pareto_monoped.errors import InputError
-from pareto_monoped.jump.audit import audit, finer
+from pareto_monoped.jump.audit import audit, finer, judge
 from pareto_monoped.jump.calibration import calibration_names, load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.screen import screened
@@ -88,6 +88,17 @@ def test_no_designs_need_no_executor(maps, pool):
 def test_an_audit_is_the_same(maps, pool, brief):
     here = audit(DESIGNS[:3], maps[0], REFERENCE, workers=2, perturbations=2, brief=brief)
     assert_equal(here, audit(DESIGNS[:3], maps[0], REFERENCE, executor=pool, perturbations=2, brief=brief))
+
+
+def test_designs_that_do_not_jump_are_left_out_of_what_is_judged(maps, pool):
+    """The first design stays on the floor; the others keep their own judgement."""
+    designs = DESIGNS[:3].copy()
+    designs[0, [NAMES.index("stiffness_n_per_m"), NAMES.index("damping_n_s_per_m")]] = 0.0, 1e4
+    known = Evaluator(maps[0], REFERENCE, 2)(designs)
+    assert known.ok.tolist() == [False, True, True]
+    here = judge(designs, maps[0], REFERENCE, known)
+    assert_equal(here, judge(designs, maps[0], REFERENCE, known, executor=pool))
+    np.testing.assert_allclose(here.mujoco_height_m[1:], known.height_m[1:], atol=1e-6)
 
 
 def test_a_screen_is_the_same(maps, pool):
