@@ -65,6 +65,11 @@ def test_python_collects_as_before_after_an_export(unchecked, monkeypatch, actua
     assert gc.get_threshold() == before
 
 
+def test_folders_above_that_are_missing_are_made(unchecked, actuator_map, calibration, tmp_path):
+    export_design(DESIGN, actuator_map, calibration, tmp_path / "a" / "b" / "robot", formats=())
+    assert (tmp_path / "a" / "b" / "robot" / "design.json").exists()
+
+
 def test_a_record_cannot_make_force_delete_outside_the_folder(unchecked, actuator_map, calibration, tmp_path):
     outside = tmp_path / "precious.txt"
     outside.write_text("keep me")

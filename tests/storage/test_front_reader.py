@@ -11,7 +11,7 @@ import pytest
 from pareto_monoped.analysis.verify import verify
 from pareto_monoped.design import in_use
 from pareto_monoped.errors import DatabaseError
-from pareto_monoped.storage.front_reader import read_front
+from pareto_monoped.storage.front_reader import least_stored, read_front
 from pareto_monoped.storage.kept_front import kept_row
 from pareto_monoped.storage.place import storage_of
 from pareto_monoped.storage.reader import read_study
@@ -67,6 +67,20 @@ def test_the_kept_front_reads_as_the_front_of_all_trials(large, statements):
     counted = [facts[state] for state in ("feasible", "infeasible", "failed")]
     assert counted == [(data.trials["state"] == state).sum() for state in ("feasible", "infeasible", "failed")]
     assert facts["wall_time_s"] == data.wall_time_s
+
+
+def test_the_least_of_a_height_is_that_of_all_feasible_trials_but_those_that_failed_their_audit(large):
+    data = read_study(large)
+    ill = data.audits.loc[~data.audits["well_conditioned"].astype(bool), "trial"]
+    told = 0
+    for height_m in (0.0, *np.linspace(0.5, 1.0, 41), 2.0):
+        high = data.trials[(data.trials["state"] == "feasible") & (data.trials["height_m"] >= height_m)]
+        expected = high.loc[~high["trial"].isin(ill), "energy_j"].min()
+        found = least_stored(large, "energy_j", height_m)
+        assert found == expected or (found is None and np.isnan(expected))
+        told += high["energy_j"].min() < expected
+    assert told
+    assert least_stored(large, "no_measure", 0.5) is None
 
 
 def test_the_front_is_read_without_the_other_trials_and_the_checkpoint(large):
