@@ -9,6 +9,8 @@ from enum import Enum
 
 import numpy as np
 
+from tests.cad.signed import GOLDEN
+
 
 def signature(*records):
     """How many numbers the records hold, the sum of their roots weighted by place, and a checksum of all words.
@@ -20,7 +22,7 @@ def signature(*records):
     values = np.array(numbers)
     values = values[np.isfinite(values)]
     rooted = np.sign(values) * np.sqrt(np.abs(values))
-    total = float(rooted @ (1.0 + np.arange(len(values)) % 7 / 7.0))
+    total = float(rooted @ (1.0 + np.arange(len(values)) * GOLDEN % 1.0))
     return [len(numbers), float(f"{total:.12g}"), zlib.crc32("\n".join(words).encode())]
 
 
