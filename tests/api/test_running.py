@@ -93,6 +93,12 @@ def test_goals_of_a_call_replace_those_of_the_study(file, tmp_path):
     assert (feasible["height_m"] >= 0.6).all()
 
 
+@pytest.mark.parametrize("limits", [{}, {"most": 5.0}, {"max": 5.0, "at_most": 4.0}])
+def test_limits_without_a_bound_or_of_another_name_are_refused(file, limits):
+    with pytest.raises(pm.StudyError, match=r"limits of mass_kg = .*'min', 'max' or both"):
+        pm.run(file, constraints={"mass_kg": limits})
+
+
 def test_a_database_with_other_goals_is_refused(file):
     pm.run(file, evaluations=40)
     with pytest.raises(pm.ParetoMonopedError, match="began with other settings"):

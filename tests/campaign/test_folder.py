@@ -73,10 +73,11 @@ def test_more_jumps_another_name_and_another_description_are_no_change(tmp_path)
     assert all(place.study.evaluations == 200 for place in places_of(load_campaign(path), folder))
 
 
-def test_the_folder_can_be_moved_with_the_files_of_its_motors(tmp_path):
+def test_the_folder_can_be_moved_with_the_files_of_its_motors_and_calibrations(tmp_path):
     old, new = tmp_path / "old", tmp_path / "new"
     old.mkdir()
-    begun(load_campaign(written(old, 'motors = ["mine.toml"]\nseeds = [1, 2]')), old / "grid")
+    axes = 'motors = ["mine.toml"]\ncalibrations = ["sand.toml"]\nseeds = [1, 2]'
+    begun(load_campaign(written(old, axes)), old / "grid")
     shutil.move(old, new)
     places = places_of(load_campaign(new / "grid.toml"), new / "grid")
     assert [stored_state(place).state for place in places] == ["unfinished"] * 2

@@ -16,7 +16,8 @@ import pandas as pd
 import pytest
 
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.analysis.choices import HEIGHTS_M, two_fronts
+from pareto_monoped.analysis import choices
+from pareto_monoped.analysis.choices import HEIGHTS_M, default_pick, two_fronts
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.cli.pareto import _Ahead, _newer
 from pareto_monoped.design import PAPER_CASES
@@ -84,6 +85,19 @@ class TestMainJob:
         assert second.study.objectives.names == ("height_m", "electrical_energy_j")
         assert two_fronts([first, second]) is not None
         assert len(second.trials) == 100
+
+    def test_the_design_is_dear_or_not_beside_the_designs_of_both_studies(self, job, monkeypatch):
+        folder, _ = job
+        beside = []
+
+        def picked(data, studies):
+            beside.append([one.study.objectives.names[1] for one in studies])
+            return default_pick(data, studies)
+
+        monkeypatch.setattr(choices, "default_pick", picked)
+        assert pareto(folder).returncode == 0
+        assert beside
+        assert all(names == ["energy_j", "electrical_energy_j"] for names in beside)
 
     def test_the_closing_table_is_what_both_fronts_offer(self, job):
         folder, done = job
