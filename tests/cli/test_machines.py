@@ -42,6 +42,7 @@ def test_replay_as_json_has_all_that_is_known(capsys):
         (("--fit", "wear", "--on", "3"), "fit = 'wear': must be one of damping, friction"),
         pytest.param(("--fit", "damping", "--on", "4"), "on = '4': must be one of 1, 2, 3", marks=pytest.mark.long),
         (("--fit", "damping"), "--fit and --on go together; give both or none"),
+        (("--on", "3"), "--fit and --on go together; give both or none"),
         (("--samples", "17"), "samples = 17: must be a power of two"),
     ],
 )

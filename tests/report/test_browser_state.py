@@ -179,6 +179,15 @@ def test_undo_and_redo_walk_through_the_views(tab, card, limits):
         tab.page.click("#redo")
     assert trial_shown(tab) == second
     assert not tab.page.is_checked("[data-show=cloud]")
+    # What was undone is gone after another change: one step back is the view in which that was made.
+    for _ in range(2):
+        tab.page.click("#undo")
+    height, mass = (tab.page.input_value(name) for name in ("#ask-height", "#ask-mass_kg"))
+    tab.page.wait_for_timeout(1100)
+    tab.page.uncheck("[data-show=cloud]")
+    assert not tab.page.is_enabled("#redo")
+    tab.page.click("#undo")
+    assert (tab.page.input_value("#ask-height"), tab.page.input_value("#ask-mass_kg")) == (height, mass)
 
 
 def test_conditions_stand_in_words_and_can_be_dropped_one_by_one(tab, limits):

@@ -3,6 +3,8 @@ import pytest
 
 from pareto_monoped.design import NAMES
 from pareto_monoped.report.packing import packed
+from pareto_monoped.pareto.pick import pick
+from pareto_monoped.pareto.selectors import Knee
 from pareto_monoped.report.resimulation import JUMPS_BYTES, LEAST_FRAMES, MOST_FRAMES, frames_for, jumps_of, resimulate
 
 
@@ -16,6 +18,10 @@ def test_every_design_of_the_front_jumps_unless_fewer_are_asked_for(data):
     some = resimulate(data, most_jumps=3).jumps
     assert {front[0], front[-1]} <= set(some) < set(front)
     assert not resimulate(data, most_jumps=0).jumps
+    # The page opens on the knee, which has its jump however few there are.
+    knee = pick(data.front(), Knee(), data.study.objectives).trial
+    assert knee not in (front[0], front[-1])
+    assert set(resimulate(data, most_jumps=2).jumps) == {front[0], knee, front[-1]}
 
 
 def test_a_design_that_no_longer_jumps_is_left_out_and_told(data, monkeypatch):
