@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from pareto_monoped.design import NAMES
-from pareto_monoped.report.packing import packed
 from pareto_monoped.pareto.pick import pick
 from pareto_monoped.pareto.selectors import Knee
+from pareto_monoped.report.packing import packed
 from pareto_monoped.report.resimulation import JUMPS_BYTES, LEAST_FRAMES, MOST_FRAMES, frames_for, jumps_of, resimulate
 
 
