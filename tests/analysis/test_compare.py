@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.actuator.search import map_for
-from pareto_monoped.analysis.compare import PARAMETERS, Log, compare, read_log
+from pareto_monoped.analysis.compare import PARAMETERS, Log, _Machine, compare, read_log
 from pareto_monoped.design import NAMES, PAPER_CASES, control_of
 from pareto_monoped.errors import InputError
 from pareto_monoped.jump.calibration import load_calibration
@@ -101,6 +101,16 @@ def test_true_values_lie_inside_the_intervals_of_blind_logs(logs, least):
         assert found.before["knee"] > 2.0 * found.after["knee"]
     assert held >= least
     assert (np.median(widths, axis=0) < [0.7, 0.015, 0.5e-3, 0.1]).all()
+
+
+def test_a_stronger_motor_scales_everything_that_its_controller_commands():
+    """All of spring, damper, torsion and weight are commanded as currents."""
+    machine = _Machine(known("C")[0], map_for("VT8020"), load_calibration("reference"))
+    plain, strong = machine._population(np.array([[1.0, 1.0, 0.0, 1.0], [1.0, 1.25, 0.0, 1.0]])).records
+    for name in ("stiffness_n_per_m", "damping_n_s_per_m", "torsional_stiffness_n_m_per_rad", "weight_n"):
+        assert strong[name] == pytest.approx(1.25 * plain[name], rel=1e-12)
+        assert plain[name] > 0.0
+    assert strong["torque_limit_n_m"] == pytest.approx(1.25 * plain["torque_limit_n_m"], rel=1e-12)
 
 
 LINES = ["time_ms,hip_deg,knee_rad,knee_current_mA,height_mm", "0,-45,1.5,0,450", "1,-44,1.4,12000,451"]

@@ -106,6 +106,7 @@ FEASIBLE = "(SELECT min(trial) FROM monoped_trials WHERE state = 'feasible')"
         (f"UPDATE monoped_trials SET height_m = 9e999 WHERE trial = {FEASIBLE}", "its height_m is no finite number"),
         (f"UPDATE monoped_trials SET height_m = 50 WHERE trial = {FEASIBLE}", "has a height_m above 10"),
         (f"UPDATE monoped_trials SET energy_j = -5 WHERE trial = {FEASIBLE}", "its energy_j is negative"),
+        (f"UPDATE monoped_trials SET height_m = -0.5 WHERE trial = {FEASIBLE}", "its height_m is negative"),
         (f"UPDATE monoped_trials SET electrical_energy_j = -5 WHERE trial = {FEASIBLE}", "electrical_energy_j is neg"),
         ("UPDATE monoped_trials SET state = 'good' WHERE trial = 6", "trial 6 has an unknown state"),
         ("UPDATE monoped_trials SET generation = 7 WHERE trial = 6", "trial 7 has an impossible generation"),

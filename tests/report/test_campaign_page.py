@@ -61,7 +61,9 @@ def test_what_is_in_no_median_is_said_and_names_are_escaped(made):
 
 def test_a_campaign_without_a_finished_study_has_a_page(tmp_path):
     campaign, results = made_campaign(tmp_path, AXES, lambda *_: None)
-    assert "0 of 12 studies are finished" in campaign_page(campaign, results)
+    page = campaign_page(campaign, results)
+    assert "0 of 12 studies are finished" in page
+    assert "12 studies are not finished and in no median" in page  # those that have not begun are among them
 
 
 HEAD = 'name = "made"\ndescription = "links < 0.4 m <script>"\n[study]\nevaluations = 40\nstrength = false\n'
