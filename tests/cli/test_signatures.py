@@ -6,9 +6,14 @@ is seen, nothing is proved. After a change that is wanted, look at what the comm
 """
 
 import re
+from dataclasses import fields
 from pathlib import Path
 
 from pareto_monoped import __version__
+from pareto_monoped.report.card import Source
+from pareto_monoped.report.page import build
+from pareto_monoped.report.resimulation import resimulate
+from pareto_monoped.storage.reader import read_study
 from tests.cli.support import run
 from tests.records import compare, signature
 
@@ -66,6 +71,19 @@ def of_text(text):
     return signature(numbers, NUMBER.sub("#", text))
 
 
+CHANGING = {"version", "seconds", "database", "provenance", "reproduce", "group"}  #: What has hashes or times.
+
+
+def of_page(db):
+    """The signature of each field of the page's content, by name."""
+    data = read_study(db)
+    payload = build([Source(data=data, resimulation=resimulate(data), models={})])
+    (card,) = payload.studies
+    parts = {f.name: (payload, f.name) for f in fields(payload) if f.name != "studies"}
+    parts |= {f"studies.{f.name}": (card, f.name) for f in fields(card)}
+    return {f"page {name}": signature(getattr(*at)) for name, at in parts.items() if at[1] not in CHANGING}
+
+
 def test_commands_print_and_write_what_they_did(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
@@ -77,4 +95,5 @@ def test_commands_print_and_write_what_they_did(tmp_path, capsys, monkeypatch):
         assert code == 0, (command, err)
         found[command] = of_text(out + "\n" + re.sub(r"^.*\d/s, .*\n", "", err, flags=re.M))
     found |= {name: of_text(Path(name).read_text()) for name in FILES}
+    found |= of_page(Path("signed.db"))
     compare(found, Path(__file__).parent / "signatures.json")
