@@ -1,6 +1,7 @@
 """Landings and hops: both engines, the energy balance, what a landing starts from, and what ends it."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from pareto_monoped.jump.calibration import load_calibration, on_stand
 from pareto_monoped.jump.controller import LANDED
 from pareto_monoped.jump.engines import population_of
 from pareto_monoped.jump.evaluate import Evaluator
-from pareto_monoped.jump.landing import LANDING, Landing, best_landed, course, hops, landed, landing_records
+from pareto_monoped.jump.landing import LANDING, Hops, Landing, best_landed, course, hops, landed, landing_records
 from pareto_monoped.jump.model import start_pose
 from pareto_monoped.jump.single import moments
 from pareto_monoped.jump.torques import lower
@@ -217,3 +218,17 @@ def test_the_leg_is_lowered_smoothly():
         lower(record)
         way.append((record["catch_m"] - record["foot_m"][1]) / (record["catch_m"] - record["crouch_m"]))
     np.testing.assert_allclose(way, [0.0, 0.0, 5 / 32, 0.5, 27 / 32, 1.0, 1.0], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("height_m", "energy_j", "first"),
+    [
+        ((0.9, 1.0, 1.0, 1.0), (40.0, 41.0, 41.1, 41.1), 2),
+        ((0.9, 1.0, 1.0, 1.0), (40.0, 41.0, 42.0, 42.1), 3),  # the energy is later than the height
+        ((0.9, 0.95, 1.0, 1.001), (40.0, 40.0, 40.0, 40.0), 3),  # the height is later than the energy
+        ((0.9, 1.0, 0.9, 1.0), (40.0, 40.0, 40.0, 40.0), 0),
+    ],
+)
+def test_hops_are_steady_once_height_and_energy_both_repeat(height_m, energy_j, first):
+    hopped = SimpleNamespace(height_m=np.array(height_m), energy_j=np.array(energy_j))
+    assert Hops.steady_from.fget(hopped) == first
