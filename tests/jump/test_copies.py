@@ -8,7 +8,7 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.definition.study import load_study, study_from_dict
 from pareto_monoped.design import LOWER, PAPER_CASES, UPPER, complete
 from pareto_monoped.errors import StudyError
-from pareto_monoped.jump.audit import MedianEvaluator
+from pareto_monoped.jump.audit import MedianEvaluator, _like_most
 from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.measures import MEASURE_NAMES
@@ -81,6 +81,18 @@ def test_a_design_of_which_half_the_copies_fail_does_not_jump():
     most = MedianEvaluator(evaluator=sinking, copies=3)(DESIGNS[:1])
     assert most.ok.all()
     assert most.reason == ("",)
+
+
+@pytest.mark.parametrize(
+    ("ends", "place"),
+    [
+        (["timeout", "sank", "sank", "ok"], 1),
+        (["sank", "timeout", "sank", "ok"], 0),
+        (["diverged", "timeout", "sank", "timeout"], 1),
+    ],
+)
+def test_a_design_ends_as_most_of_its_copies_do_of_which_the_first_says_why(ends, place):
+    assert _like_most(np.array(ends)) == place
 
 
 def test_a_study_under_paper_has_a_front_and_no_audit(tmp_path):

@@ -73,7 +73,7 @@ def test_the_least_of_a_height_is_that_of_all_feasible_trials_but_those_that_fai
     data = read_study(large)
     ill = data.audits.loc[~data.audits["well_conditioned"].astype(bool), "trial"]
     told = 0
-    for height_m in (0.0, *np.linspace(0.5, 1.0, 41), 2.0):
+    for height_m in (0.0, *np.linspace(0.5, 1.0, 41), *data.front()["height_m"], 2.0):
         high = data.trials[(data.trials["state"] == "feasible") & (data.trials["height_m"] >= height_m)]
         expected = high.loc[~high["trial"].isin(ill), "energy_j"].min()
         found = least_stored(large, "energy_j", height_m)
