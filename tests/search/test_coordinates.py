@@ -91,6 +91,19 @@ def test_coordinates_and_designs_are_each_others_inverse(actuator_map):
     assert [actuator_map.lookup(ratio).ratio for ratio in designs[:50, HIP]] == designs[:50, HIP].tolist()
 
 
+def test_a_ratio_between_or_beyond_gearboxes_means_the_nearest(actuator_map):
+    coordinates = coordinates_of(listed(), actuator_map)
+    space, ratios = coordinates.space, [gear.ratio for gear in coordinates.gears["knee_ratio"]]
+    place, designs = space.names.index("knee_ratio"), coordinates.designs(np.zeros((1, len(space.names))))
+    for k, (ratio, above) in enumerate(zip(ratios, ratios[1:], strict=False)):
+        for share, nearest in ((0.0, k), (0.4, k), (0.6, k + 1), (1.0, k + 1)):
+            designs[0, KNEE] = ratio + share * (above - ratio)
+            assert coordinates.values(designs)[0, place] == nearest
+    for beyond, nearest in ((ratios[0] - 0.3, 0), (ratios[-1] + 0.3, len(ratios) - 1)):
+        designs[0, KNEE] = beyond
+        assert coordinates.values(designs)[0, place] == nearest
+
+
 def test_every_gearbox_is_drawn_equally_often(actuator_map):
     study = listed(algorithm={"name": "random", "population": 20000})
     coordinates, values = searched(study, actuator_map, 1)
