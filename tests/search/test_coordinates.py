@@ -1,5 +1,6 @@
 """Gears as gears: a study searches the list of gearboxes within its bounds, and stores their real ratios."""
 
+import itertools
 import json
 import sqlite3
 
@@ -95,7 +96,7 @@ def test_a_ratio_between_or_beyond_gearboxes_means_the_nearest(actuator_map):
     coordinates = coordinates_of(listed(), actuator_map)
     space, ratios = coordinates.space, [gear.ratio for gear in coordinates.gears["knee_ratio"]]
     place, designs = space.names.index("knee_ratio"), coordinates.designs(np.zeros((1, len(space.names))))
-    for k, (ratio, above) in enumerate(zip(ratios, ratios[1:], strict=False)):
+    for k, (ratio, above) in enumerate(itertools.pairwise(ratios)):
         for share, nearest in ((0.0, k), (0.4, k), (0.6, k + 1), (1.0, k + 1)):
             designs[0, KNEE] = ratio + share * (above - ratio)
             assert coordinates.values(designs)[0, place] == nearest
