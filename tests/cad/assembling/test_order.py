@@ -11,7 +11,7 @@ from pareto_monoped.cad.assembly import Instance, instances
 from pareto_monoped.cad.bodies import KEY_REACH_MM, blocking_of
 from pareto_monoped.cad.check.retention import POSE
 from pareto_monoped.cad.shape.meshes import mesh_of, placed
-from pareto_monoped.cad.steps import steps_of, stuck, take_apart
+from pareto_monoped.cad.steps import Joined, Whole, steps_of, stuck, take_apart
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.geometry.parts import Part, Prism
 from pareto_monoped.geometry.roles import FASTENERS, Role
@@ -286,3 +286,9 @@ def key_of(body):
     key = m3.Manifold.cylinder(reach, radius).rotate((-90.0, 0.0, 0.0))
     start = y1 + 0.2 if up else y0 - 0.2 - reach
     return key.translate((0.5 * (x0 + x1), start, 0.5 * (z0 + z1)))
+
+
+def test_wholes_that_are_stuck_are_told_wherever_they_lie_in_an_assembly():
+    loose, held, other = (Whole(members=frozenset(each), stuck=len(each) > 1) for each in ({0}, {1, 2}, {3, 4}))
+    inner = Joined(kept=loose, added=held, out="+x", fasteners=())
+    assert list(stuck(Joined(kept=other, added=inner, out="+z", fasteners=()))) == [other.members, held.members]
