@@ -2,16 +2,48 @@
 
 import pytest
 
+from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.drawing.part_sheet import part_sheet
+from pareto_monoped.design import PAPER_CASES
+from pareto_monoped.geometry.features import Hole
 from pareto_monoped.geometry.parts import layer, machined_part
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import M4, tapped
 from pareto_monoped.geometry.shapes import Circle, rectangle
+from pareto_monoped.robot.build import build_robot
 
 
 def words(part):
     """All that a sheet says, lines of notes joined."""
     return " ".join(label.text for label in part_sheet(part)[0].labels)
+
+
+@pytest.fixture(scope="module")
+def made():
+    """Made parts of a robot by name, one of each."""
+    robot = build_robot(PAPER_CASES["A"].design, map_for("VT8020"))
+    return {part.name: part for unit in robot.units for part in unit.parts if part.process != "bought"}
+
+
+def test_every_thread_stands_on_its_sheet_with_class_and_depth(made):
+    threads = 0
+    for part in made.values():
+        for feature in part.features:
+            if isinstance(feature, Hole) and feature.thread is not None:
+                threads += 1
+                depth = "" if feature.thread_mm is None else f", {float(feature.thread_mm):g} deep, drill Ø"
+                assert f"{feature.thread.text}{depth}" in words(part), part.name
+    assert threads >= 10
+
+
+def test_threads_on_the_axis_have_the_faces_that_they_are_cut_from(made):
+    rod, pillar = made["base_rod"], made["thigh_standoff"]
+    (length,) = rod.lengths
+    assert (
+        f"Tapped on the axis from the faces at 0 and {length.nominal_mm:g}: M4x0.7 - 6H, 10 deep, drill Ø3.3 through."
+        in words(rod)
+    )
+    assert "Tapped on the axis from the face at 0: M3x0.5 - 6H, 7 deep, drill Ø2.5, 8.8 deep." in words(pillar)
 
 
 @pytest.mark.parametrize(("enters", "said"), [("low", "the far side"), ("high", "this side"), ("both", "both sides")])
