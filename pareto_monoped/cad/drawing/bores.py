@@ -82,7 +82,8 @@ class Bore:
     def details(self, *, from_above: bool) -> Iterator[str]:
         """Countersinks, chamfers and lead-ins, by the side that they are on; a note gives those of threads.
 
-        A thread that is shorter than its hole has the side that it is cut from, which no drawn edge shows.
+        A thread that is shorter than its hole has the side that it is cut from, which no drawn edge shows; one to the
+        bottom of its hole leaves no run-out to the usual tap.
         """
         threaded = self.feature is not None and self.feature.thread is not None
         said = [
@@ -93,6 +94,8 @@ class Bore:
         if threaded and self.through and self.feature is not None and self.feature.thread_mm is not None:
             near, far = (self.mouths[above] is not None for above in (from_above, not from_above))
             yield f"tapped from {'both sides' if near and far else 'this side' if near else 'the far side'}"
+        if threaded and not self.through and self.feature is not None and self.feature.thread_mm is None:
+            yield "bottoming tap"
         for text in dict.fromkeys(text for text, _ in said):
             sides = {near for other, near in said if other == text}
             yield f"{text}{', both sides' if len(sides) == 2 else '' if True in sides else ', far side'}"

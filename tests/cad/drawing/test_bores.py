@@ -62,3 +62,16 @@ def test_a_thread_in_part_of_a_through_hole_has_its_drill_and_its_side(enters, s
     # A round part is seen from the side of its datum.
     turned = {"the far side": "this side", "this side": "the far side"}
     assert f"tapped from {said if flat else turned.get(said, said)}" in text
+
+
+@pytest.mark.parametrize(("depth", "bottoming"), [(None, True), (4.0, False)])
+def test_a_thread_to_the_bottom_of_its_hole_asks_for_a_bottoming_tap(depth, bottoming):
+    hole = Circle(radius_mm=M4.core, x_mm=6.0)
+    part = machined_part(
+        name="block",
+        role=Role.BRACKET,
+        prisms=(layer(Circle(radius_mm=15.0), 0.0, 6.0), layer(Circle(radius_mm=15.0), 6.0, 12.0, hole)),
+        features=(tapped(M4, (hole,), 6.0, 12.0, enters="high", usable_mm=depth),),
+    )
+    assert f"{depth or 6.0:g} deep, drill Ø3.3, 6 deep" in words(part)
+    assert ("bottoming tap" in words(part)) == bottoming
