@@ -331,7 +331,11 @@ def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, sha
             process="bought",
             group=Group.HOUSING,
             catalogue_mass_kg=_BODY_KG,
-            purchases=(Purchase(kind="encoder", designation="RLS RM08, 12 bit"),),
+            purchases=(
+                Purchase(
+                    kind="encoder", designation="RLS RM08, 12 bit", remark="state output and supply when ordering"
+                ),
+            ),
             note=f"{_GAP_MM:g} mm from the magnet, within 0.5 mm",
             joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="encoder_cap", adhesive=EPOXY),
         ),
