@@ -121,8 +121,8 @@ def _turnbuckles(pins_mm: Numbers, places: tuple[_Place, ...], d: LegDimensions)
             joint=Joint(kind=JointKind.THREADED, how="threaded onto", partner="turnbuckle_end_hip"),
             note=f"{BAR_WIDTH:g} mm square{cut}, milled to {BAR_FLAT:g} mm between the ends; tapped "
             f"{THREAD.thread.text} at one end and {_left(THREAD.thread).text} at the other, {_THREADED:g} mm deep at "
-            f"least with a bottoming tap, drill Ø{2.0 * THREAD.core:g}, {_TAPPED:g} mm deep, whose point may come out "
-            f"into the flats; drawn as square bores; travel {TRAVEL:g} mm at either end to either side",
+            f"least with a bottoming tap, drill {2.0 * THREAD.core:g} mm, {_TAPPED:g} mm deep, whose point may come "
+            f"out into the flats; drawn as square bores; travel {TRAVEL:g} mm at either end to either side",
         ),
         *(
             part
@@ -166,7 +166,7 @@ def _fastened(
             ),
             note=f"fork with {hand} stud {thread.text}, {TRAVEL + _NUT + _SPARE + _STUD_DEPTH:g} mm long without "
             f"undercut, run-out before the fork {_RUN_OUT:g} mm at most, drawn as a square of its area; the pin is no "
-            f"part of it: it is the chain's own, through holes of Ø{pin.text} that are reamed in line through both "
+            f"part of it: it is the chain's own, through holes {pin.text} that are reamed in line through both "
             "cheeks, and through the chain's inner link, and is riveted",
         ),
         steel_part(

@@ -86,10 +86,10 @@ def test_threads_and_pins_of_the_turnbuckles_are_said_in_full(leg):
     assert f"right-hand stud M5x0.8 - 6g, {stud}" in notes["turnbuckle_end_hip"]
     assert f"left-hand stud M5x0.8 LH - 6g, {stud}" in notes["turnbuckle_end_knee"]
     assert "tapped M5x0.8 - 6H at one end and M5x0.8 LH - 6H at the other" in notes["turnbuckle_bar"]
-    assert "14.5 mm deep at least with a bottoming tap, drill Ø4.2, 16 mm deep" in notes["turnbuckle_bar"]
+    assert "14.5 mm deep at least with a bottoming tap, drill 4.2 mm, 16 mm deep" in notes["turnbuckle_bar"]
     for end in ("hip", "knee"):
         assert "the pin is no part of it: it is the chain's own" in notes[f"turnbuckle_end_{end}"]
-        assert f"holes of Ø{leg.chain.pin_diameter_mm:g} H7 that are reamed" in notes[f"turnbuckle_end_{end}"]
+        assert f"holes {leg.chain.pin_diameter_mm:g} H7 that are reamed" in notes[f"turnbuckle_end_{end}"]
         heights = [
             y
             for prism in parts[f"turnbuckle_end_{end}"].prisms[-1:]
