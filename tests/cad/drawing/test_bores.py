@@ -9,7 +9,7 @@ from pareto_monoped.geometry.features import Hole
 from pareto_monoped.geometry.parts import layer, machined_part
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.screws import M4, tapped
-from pareto_monoped.geometry.shapes import Circle, rectangle
+from pareto_monoped.geometry.shapes import Circle, Pattern, rectangle
 from pareto_monoped.robot.build import build_robot
 
 
@@ -75,3 +75,23 @@ def test_a_thread_to_the_bottom_of_its_hole_asks_for_a_bottoming_tap(depth, bott
     )
     assert f"{depth or 6.0:g} deep, drill Ø3.3, 6 deep" in words(part)
     assert ("bottoming tap" in words(part)) == bottoming
+
+
+def test_holes_that_look_alike_have_the_heights_of_their_flange():
+    """In a view along the axis, holes of a front and of a rear flange cannot be told apart."""
+    front, rear = (
+        Pattern(radius_mm=2.0, pitch_radius_mm=15.0, count=4),
+        Pattern(radius_mm=2.0, pitch_radius_mm=14.0, count=4),
+    )
+    tube, flange = Circle(radius_mm=10.0), Circle(radius_mm=20.0)
+    block, boss = rectangle(width_mm=50.0, height_mm=50.0), rectangle(width_mm=30.0, height_mm=30.0)
+    for outline, neck, prefix, joined in ((flange, tube, "between", "and"), (block, boss, "z", "to")):
+        part = machined_part(
+            name="bobbin",
+            role=Role.BRACKET,
+            prisms=(layer(outline, 0.0, 3.0, front), layer(neck, 3.0, 20.0), layer(outline, 20.0, 25.0, rear)),
+        )
+        assert f"{prefix} 0 {joined} 3" in words(part)
+        assert f"{prefix} 20 {joined} 25" in words(part)
+        alike = machined_part(name="ring", role=Role.BRACKET, prisms=(layer(outline, 0.0, 3.0, front, rear),))
+        assert f"{prefix} 0 {joined} 3" not in words(alike)
