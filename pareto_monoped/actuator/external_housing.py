@@ -154,7 +154,7 @@ def _casing_and_backplate(
                 *spigot(z_plate, at, settings),
             ),
             features=(turned(at.r_casing, z_plate + SPIGOT_MM, -1.0),),
-            note=f"step to fit the casing{register_note(at.r_casing, 'g6', 'the bore of the casing, H7')}",
+            note=f"step to fit the casing{register_note(at.r_casing, 'h7', 'the bore of the casing, H7')}",
         ),
     )
 

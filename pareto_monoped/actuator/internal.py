@@ -192,7 +192,7 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
                 narrower("register", at.z_bearing_front, -casing.plate_mm),
                 Length(name="length", z0_mm=z_plate, z1_mm=-casing.plate_mm, lower_mm=0.0, upper_mm=2.0 * FINE_MM),
             ),
-            note=f"bore and faces in one clamping{register_note(at.r_seat, 'g6', 'the bore of the ring housing, H7')}"
+            note=f"bore and faces in one clamping{register_note(at.r_seat, 'h7', 'the bore of the ring housing, H7')}"
             f"{register_note(at.r_casing, 'H7', f'the step of the backplate over {SPIGOT_MM:g} mm')}",
         ),
         housing_part(
@@ -275,7 +275,7 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
             bored(Circle(radius_mm=rear_seat), z_plate, shell.z_seat, enters="high"),
             turned(at.r_casing, z_plate + SPIGOT_MM, -1.0),
         ),
-        note=f"step to fit the casing{register_note(at.r_casing, 'g6', 'the bore of the casing, H7')}",
+        note=f"step to fit the casing{register_note(at.r_casing, 'h7', 'the bore of the casing, H7')}",
     )
 
 

@@ -240,17 +240,17 @@ def test_a_motor_too_small_for_any_gearbox_says_so():
 
 @pytest.mark.parametrize("name", ["VT8020", "MAD_M6C12"])
 def test_the_registers_of_housings_are_round_faces_of_both_parts_in_zones_that_fit(name):
-    """A hole and a shaft: H7 with g6, or with the ring, which is ground to h6."""
+    """A hole and a shaft: H7 with h7, or with the ring, which is ground to h6."""
     told = 0
     for actuator in bests(name, every=8):
         parts = {part.name: part for part in actuator.parts}
         for one, zone, words, mate in (
             ("casing", "H7", "the step of the backplate over 1.5 mm", "backplate"),
-            ("backplate", "g6", "the bore of the casing, H7", "casing"),
+            ("backplate", "h7", "the bore of the casing, H7", "casing"),
             (
                 "casing",
                 *(
-                    ("g6", "the bore of the ring housing, H7", "ring_housing")
+                    ("h7", "the bore of the ring housing, H7", "ring_housing")
                     if actuator.family == "ISSPG"
                     else ("H7", "the ring", "ring")
                 ),
