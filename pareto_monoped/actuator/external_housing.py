@@ -15,7 +15,7 @@ from pareto_monoped.actuator.features import (
     spigot,
     tube,
 )
-from pareto_monoped.actuator.layout import ExternalLayout, Layout, vents
+from pareto_monoped.actuator.layout import ExternalLayout, Layout, register_note, vents
 from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.features import bored, turned
@@ -135,7 +135,8 @@ def _casing_and_backplate(
                 wider("ring seat", at.z_gear_back, z_flange),
                 Length(name="length", z0_mm=z_plate, z1_mm=z_flange, lower_mm=0.0, upper_mm=2.0 * FINE_MM),
             ),
-            note="bore and faces in one clamping",
+            note=f"bore and faces in one clamping{register_note(at.r_ring, 'H7', 'the ring')}"
+            f"{register_note(at.r_casing, 'H7', f'the step of the backplate over {SPIGOT_MM:g} mm')}",
         ),
         housing_part(
             name="backplate",
@@ -153,7 +154,7 @@ def _casing_and_backplate(
                 *spigot(z_plate, at, settings),
             ),
             features=(turned(at.r_casing, z_plate + SPIGOT_MM, -1.0),),
-            note="step to fit the casing",
+            note=f"step to fit the casing{register_note(at.r_casing, 'h7', 'the bore of the casing, H7')}",
         ),
     )
 

@@ -19,6 +19,7 @@ from pareto_monoped.actuator.layout import (
     Layout,
     SunNeck,
     hub_note,
+    shoulder_note,
     spline_note,
 )
 from pareto_monoped.actuator.motor import Motor
@@ -96,7 +97,7 @@ def sun_part(
         fits=tuple(Fit(diameter_mm=2.0 * radius, zone="h6", seat=True) for radius in (neck.r_journal, seat_mm)),
         features=(front, rear),
         note=f"one piece with its shaft, {spline_note(spline, shaft_mm)}; ground between centres, reliefs E 0.2 x 0.1 "
-        f"(DIN 509); {NECK_NOTE}; {gear_note(teeth, settings)}",
+        f"(DIN 509); {shoulder_note(teeth, neck.r, seat_mm)}{NECK_NOTE}; {gear_note(teeth, settings)}",
         joint=Joint(kind=JointKind.BONDED, how="splined and bonded into", partner="coupling", adhesive=RETAINER),
     )
 
@@ -330,7 +331,11 @@ def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, sha
             process="bought",
             group=Group.HOUSING,
             catalogue_mass_kg=_BODY_KG,
-            purchases=(Purchase(kind="encoder", designation="RLS RM08, 12 bit"),),
+            purchases=(
+                Purchase(
+                    kind="encoder", designation="RLS RM08, 12 bit", remark="state output and supply when ordering"
+                ),
+            ),
             note=f"{_GAP_MM:g} mm from the magnet, within 0.5 mm",
             joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="encoder_cap", adhesive=EPOXY),
         ),

@@ -35,6 +35,7 @@ from pareto_monoped.actuator.layout import (
     Layout,
     frameless,
     internal_layout,
+    register_note,
     vents,
 )
 from pareto_monoped.actuator.motor import Motor, envelope_length, motor_order
@@ -191,7 +192,8 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
                 narrower("register", at.z_bearing_front, -casing.plate_mm),
                 Length(name="length", z0_mm=z_plate, z1_mm=-casing.plate_mm, lower_mm=0.0, upper_mm=2.0 * FINE_MM),
             ),
-            note="bore and faces in one clamping",
+            note=f"bore and faces in one clamping{register_note(at.r_seat, 'h7', 'the bore of the ring housing, H7')}"
+            f"{register_note(at.r_casing, 'H7', f'the step of the backplate over {SPIGOT_MM:g} mm')}",
         ),
         housing_part(
             name="ring_housing",
@@ -273,7 +275,7 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
             bored(Circle(radius_mm=rear_seat), z_plate, shell.z_seat, enters="high"),
             turned(at.r_casing, z_plate + SPIGOT_MM, -1.0),
         ),
-        note="step to fit the casing",
+        note=f"step to fit the casing{register_note(at.r_casing, 'h7', 'the bore of the casing, H7')}",
     )
 
 

@@ -184,8 +184,8 @@ COUPLING_DOWEL = Dowel(diameter_mm=2.5)
 """Between the coupling and what turns it; our own choice: they stand between screws of M3 or M4 on 22 mm."""
 DOWEL_STANDS_OUT_MM = 1.0
 """How far such a dowel may stand out: half of ``motor_carrier_clearance_mm``."""
-_RUN_OUT_MM = 2.0
-"""Along the shaft, of a hob of 24 mm that cuts 0.125 mm into it: sqrt(12^2 - 11.875^2) = 1.7 mm, rounded up."""
+_HOB_RADIUS_MM = 12.0
+"""Of the hob, or of the wheel that grinds the teeth: as small as both are sold; our own choice."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -208,9 +208,33 @@ def sun_neck(at: Layout, settings: ActuatorSettings) -> SunNeck:
     )
 
 
+def register_note(radius_mm: Numbers, zone: str, mate: str) -> str:
+    """Return how a diameter that centres a part fits its mate, for its note; '' for arrays."""
+    return "" if np.ndim(radius_mm) else f"; register {2.0 * float(radius_mm):g} {zone}, to fit {mate}"
+
+
 def hub_note(settings: ActuatorSettings) -> str:
     """Return how the coupling is made to fit."""
     return f"wire-cut to the shaft's spline, {settings.parts.spline.play_mm:g} mm play"
+
+
+def _run_out_mm(root_radius_mm: Numbers, shaft_radius_mm: Numbers) -> float:
+    """Return how far such a tool runs out along a shaft that is wider than the roots, rounded up to 0.5 mm; 0 if it
+    does not cut into it.
+    """
+    depth = max(float(shaft_radius_mm) - float(root_radius_mm), 0.0)
+    return float(np.ceil(2.0 * np.sqrt(_HOB_RADIUS_MM**2 - (_HOB_RADIUS_MM - depth) ** 2)) / 2.0)
+
+
+def shoulder_note(gear: ExternalGear, neck_radius_mm: Numbers, shaft_radius_mm: Numbers) -> str:
+    """Return how far the tool of the sun's teeth may run out on either side of them; '' where it cuts into neither."""
+    if np.ndim(gear.teeth):
+        return ""
+    sides = ((neck_radius_mm, "neck"), (shaft_radius_mm, "shaft"))
+    cut = [(_run_out_mm(gear.root_radius_mm, radius_mm), name) for radius_mm, name in sides]
+    where = " and ".join(f"{long:g} mm into the {name}" for long, name in cut if long > 0.0)
+    tool = f"hob and wheel of {2.0 * _HOB_RADIUS_MM:g} mm or less may run out"
+    return f"teeth with roots of {2.0 * float(gear.root_radius_mm):.2f} mm: {tool} {where}; " if where else ""
 
 
 def spline_note(spline: ExternalGear, shaft_radius_mm: float) -> str:
@@ -219,9 +243,8 @@ def spline_note(spline: ExternalGear, shaft_radius_mm: float) -> str:
     root, shaft = 2.0 * float(spline.root_radius_mm), 2.0 * shaft_radius_mm
     if root >= shaft:
         return note
-    return (
-        f"{note}, roots of {root:g} mm below the shaft's {shaft:g} mm: hob may run out into it over {_RUN_OUT_MM:g} mm"
-    )
+    run_out = _run_out_mm(spline.root_radius_mm, shaft_radius_mm)
+    return f"{note}, roots of {root:g} mm below the shaft's {shaft:g} mm: hob may run out into it over {run_out:g} mm"
 
 
 _FLANGE_WIDTH_MM = 6.0

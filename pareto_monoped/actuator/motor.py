@@ -282,4 +282,10 @@ def envelope_length(z0_mm: Numbers, z1_mm: Numbers, name: str = "length") -> Len
 def motor_order(motor: Motor, variant: Literal["framed", "frameless"]) -> Purchase:
     """Return the order of a motor; stator and rotor come together."""
     designation = f"motor {motor.name}, {variant}, {motor.kv_rpm_per_v:g} rpm/V"
-    return Purchase(kind="motor", designation=designation, remark=motor.description)
+    remark, kit = motor.description, motor.frameless
+    if variant == "frameless" and kit is not None:
+        # Not every maker lists it: sizes tell the seller what is meant.
+        inner, outer = motor.stator_diameters_mm
+        sizes = f"stator {inner:g} x {outer:g} mm, {1e3 * kit.mass_kg:g} g together"
+        remark = ", ".join(filter(None, (remark, f"stator and rotor without frame, {sizes}")))
+    return Purchase(kind="motor", designation=designation, remark=remark)

@@ -18,6 +18,8 @@ _BUSH_LENGTHS_MM = (4.0, 6.0, 8.0, 10.0)
 """Of bushes for pins of 6 mm (ISO 3547-1; makers add the shortest)."""
 _BUSH_LESS_MM = 0.1
 """By how much it may be shorter, as it is cut; our own choice."""
+_SUPPORT_RING_MM = 1.2
+"""Least thickness of a support ring for these pins (DIN 988)."""
 _WASHER_LESS_MM = 0.05
 """By how much a washer of 1 to 2 mm may be thinner (DIN 988)."""
 _SPACER_PLAY_MM = 0.2
@@ -120,7 +122,8 @@ def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             purchases=(
                 Purchase(
                     kind="washer",
-                    designation=f"shim ring DIN 988 - {pin:g} x {data.washer_diameter_mm:g} x {data.washer_mm:g}",
+                    designation=f"{_ring_kind(data.washer_mm)} {pin:g} x {data.washer_diameter_mm:g} x "
+                    f"{data.washer_mm:g}",
                     standard="DIN 988",
                 ),
             ),
@@ -140,6 +143,11 @@ def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             )
         )
     return tuple(parts)
+
+
+def _ring_kind(thickness_mm: float) -> str:
+    """Return which rings of DIN 988 have a thickness: the hard ones, of 1.2 mm at the least, or thinner shims."""
+    return "support ring DIN 988 - S" if thickness_mm >= _SUPPORT_RING_MM else "shim ring DIN 988 - PS"
 
 
 def _ordered_needles(rows: NeedleRows, diameter_mm: float) -> tuple[Purchase, ...]:

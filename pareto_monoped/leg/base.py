@@ -178,7 +178,8 @@ def _rods(far_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                 turned(d.rod_radius_mm, near_mm, 1.0),
                 turned(d.rod_radius_mm, far_mm, -1.0),
             ),
-            note=f"{2.0 * d.rod_radius_mm:g} mm tube; the test stand's carriage clamps to the rods",
+            note=f"{2.0 * d.rod_radius_mm:g} mm bar, drilled from both ends; the test stand's carriage clamps to the "
+            "rods",
         ),
         *(
             screw_part(

@@ -5,9 +5,12 @@ strand is a bar of aluminium, which is lighter than the chain and can be adjuste
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
+from pareto_monoped.geometry.features import Thread
+from pareto_monoped.geometry.making import Fit
 from pareto_monoped.geometry.parts import Part, Prism, disc, layer, steel_part, strong_part
 from pareto_monoped.geometry.roles import Joint, JointKind, Purchase, Role
 from pareto_monoped.geometry.screws import M5, ordered_nut
@@ -22,7 +25,9 @@ HALF_FORK, CHEEK = 4.0, 1.6  # half width of a fork, and thickness of its cheeks
 _STUD_DEPTH = 10.5  # in the bar, in the middle of the travel
 TRAVEL = 4.0  # of either end to either side, for assembly and wear
 LEAST_ENGAGED = _STUD_DEPTH - TRAVEL  # of a stud: 1.3 diameters
-_TAPPED = 16.0  # depth of the bar's threads
+_TAPPED = 16.0  # depth of the bar's bores
+_THREADED = _STUD_DEPTH + TRAVEL  # of their threads at least: as far as a stud goes
+_RUN_OUT = 1.0  # of the stud's thread before the fork at most (DIN 76-1, short); an undercut would weaken the stud
 _NUT, _NUT_FLATS = 2.7, 8.0  # height and width across flats of a thin nut M5 (ISO 4035)
 _SPARE = 0.3  # between nut and fork at the short end of the travel
 # Our own layout across the strand, mm.
@@ -114,9 +119,10 @@ def _turnbuckles(pins_mm: Numbers, places: tuple[_Place, ...], d: LegDimensions)
             prisms=_bar(half_bar),
             places_mm=places,
             joint=Joint(kind=JointKind.THREADED, how="threaded onto", partner="turnbuckle_end_hip"),
-            note=f"{BAR_WIDTH:g} mm square{cut}, milled to {BAR_FLAT:g} mm between the ends; tapped {THREAD.name} "
-            f"right-hand and left-hand, {_TAPPED:g} mm deep, drawn as square bores; "
-            f"travel {TRAVEL:g} mm at either end to either side",
+            note=f"{BAR_WIDTH:g} mm square{cut}, milled to {BAR_FLAT:g} mm between the ends; tapped "
+            f"{THREAD.thread.text} at one end and {_left(THREAD.thread).text} at the other, {_THREADED:g} mm deep at "
+            f"least with a bottoming tap, drill {2.0 * THREAD.core:g} mm, {_TAPPED:g} mm deep, whose point may come "
+            f"out into the flats; drawn as square bores; travel {TRAVEL:g} mm at either end to either side",
         ),
         *(
             part
@@ -126,11 +132,17 @@ def _turnbuckles(pins_mm: Numbers, places: tuple[_Place, ...], d: LegDimensions)
     )
 
 
+def _left(thread: Thread) -> Thread:
+    return replace(thread, left_hand=True)
+
+
 def _fastened(
     end: str, side: float, pins_mm: Numbers, half_bar_mm: Numbers, places: tuple[_Place, ...], d: LegDimensions
 ) -> tuple[Part, Part]:
     """Build the fork and locknut at the upper (side 1) or lower end (-1) of both turnbuckles."""
     hand = "right-hand" if side > 0.0 else "left-hand"
+    thread = replace(THREAD.thread if side > 0.0 else _left(THREAD.thread), tolerance="6g")
+    pin = Fit(diameter_mm=d.chain.pin_diameter_mm, zone="H7")
 
     def shifted(by_mm: Numbers) -> tuple[_Place, ...]:
         return tuple((x, y + side * by_mm, z) for x, y, z in places)
@@ -152,8 +164,10 @@ def _fastened(
                     remark="riveted into the fork",
                 ),
             ),
-            note=f"fork with {hand} {THREAD.name} - 6g stud, drawn as a square of its area; its pin goes through both "
-            "cheeks and the chain's inner link and is riveted",
+            note=f"fork with {hand} stud {thread.text}, {TRAVEL + _NUT + _SPARE + _STUD_DEPTH:g} mm long without "
+            f"undercut, run-out before the fork {_RUN_OUT:g} mm at most, drawn as a square of its area; the pin is no "
+            f"part of it: it is the chain's own, through holes {pin.text} that are reamed in line through both "
+            "cheeks, and through the chain's inner link, and is riveted",
         ),
         steel_part(
             name=f"turnbuckle_nut_{end}",

@@ -111,7 +111,7 @@ def driver_parts(joint: str, face_mm: Numbers, direction: float, d: LegDimension
                 Purchase(
                     kind="standoff",
                     designation=f"hexagon standoff {driver.screw.name} x {_STANDOFF:g}, {_STANDOFF_FLATS:g} mm across "
-                    "flats, aluminium, female threads",
+                    "flats, aluminium, female threads from both ends",
                 ),
             ),
         ),

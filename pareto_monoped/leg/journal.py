@@ -4,6 +4,8 @@ there.
 
 from dataclasses import replace
 
+import numpy as np
+
 from pareto_monoped.actuator.bearings import ordered_bearing, width_less_mm
 from pareto_monoped.geometry.features import turned
 from pareto_monoped.geometry.making import Fit, Length, narrower
@@ -105,6 +107,14 @@ def journal_parts(
             room_mm=_THREAD,
             direction=-1.0,
             holes=holes,
-            note="into the knee motor's own mounting pattern",
+            note=_screwed_into(back_clearance_mm),
         ),
     )
+
+
+def _screwed_into(back_clearance_mm: Numbers) -> str:
+    """Return where the screws have their threads: behind the plate that they pass, or in it; '' for arrays."""
+    if np.ndim(back_clearance_mm):
+        return ""
+    through = "through the knee actuator's backplate into the threads in its motor's base"
+    return through if back_clearance_mm else "into the threads in the knee actuator's backplate"

@@ -136,7 +136,7 @@ def sleeve_bolt(
             Purchase(
                 kind="nut",
                 designation=f"sleeve nut {screw.name} x {sleeve:g}, countersunk 90 degrees, "
-                f"{2.0 * (screw.shank + _SLEEVE_WALL):g} mm outside, steel",
+                f"{2.0 * (screw.shank + _SLEEVE_WALL):g} mm outside, internal hex or slot, steel zinc plated",
             ),
         ),
         note=f"flush, {stack:g} mm together",

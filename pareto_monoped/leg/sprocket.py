@@ -141,7 +141,9 @@ def support_parts(d: LegDimensions, flange_radius_mm: float, holes: tuple[Shape,
             ),
             features=(Hole(shapes=(bore,), low_mm=end, high_mm=half + FLANGE, low=centre, high=centre),),
             # Makers of needle bearings ask 0.3 mm of raceways at least.
-            note="raceway of the needle bearing, case-hardened at least 0.3 mm deep and ground",
+            note="raceway of the needle bearing, case-hardened at least 0.3 mm deep and ground; the flange stays soft: "
+            f"its {d.drive_dowel.count:g} holes of {2.0 * d.drive_dowel.radius_mm:g} mm for dowels are reamed to H7 "
+            "together with drive sprocket and drive coupling",
         ),
         steel_part(
             name="drive_bearing",

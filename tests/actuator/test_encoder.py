@@ -48,3 +48,8 @@ def _is_in_the_shaft(actuator):
     (ring,) = rings(magnet)
     around = [r for r in rings(shaft) if r.r0 == ring.r1 and np.isclose(r.z0, ring.z0) and np.isclose(r.z1, ring.z1)]
     assert len(around) == 1
+
+
+def test_the_order_of_the_sensor_asks_for_what_its_name_leaves_open():
+    (sensor,) = (part for part in next(iter(of_each_family("VT8020"))).parts if part.name == "encoder")
+    assert sensor.described.startswith("RLS RM08, 12 bit, state output and supply when ordering; ")

@@ -1,6 +1,7 @@
 """Every actuator of every map can be put together: nothing overlaps, nothing rubs, bolts meet their holes."""
 
 import math
+import re
 from dataclasses import replace
 from functools import cache
 
@@ -235,3 +236,33 @@ def test_a_motor_too_small_for_any_gearbox_says_so():
     )
     with pytest.raises(DesignError, match=r"gear ratio = 5.0: tiny has no gearbox.*gearbox_diameter.*another motor"):
         build_map(motor).lookup(5.0)
+
+
+@pytest.mark.parametrize("name", ["VT8020", "MAD_M6C12"])
+def test_the_registers_of_housings_are_round_faces_of_both_parts_in_zones_that_fit(name):
+    """A hole and a shaft: H7 with h7, or with the ring, which is ground to h6."""
+    told = 0
+    for actuator in bests(name, every=8):
+        parts = {part.name: part for part in actuator.parts}
+        for one, zone, words, mate in (
+            ("casing", "H7", "the step of the backplate over 1.5 mm", "backplate"),
+            ("backplate", "h7", "the bore of the casing, H7", "casing"),
+            (
+                "casing",
+                *(
+                    ("h7", "the bore of the ring housing, H7", "ring_housing")
+                    if actuator.family == "ISSPG"
+                    else ("H7", "the ring", "ring")
+                ),
+            ),
+        ):
+            said = [
+                float(d)
+                for d in re.findall(rf"register ([\d.]+) {zone}, to fit {re.escape(words)}(?:;|$)", parts[one].note)
+            ]
+            assert len(said) == 1, (one, parts[one].note)
+            for part in (parts[one], parts[mate]):
+                radii = [r for ring in rings(part) for r in (ring.r0, ring.r1)]
+                assert any(abs(2.0 * r - said[0]) < 5e-4 for r in radii), (part.name, said)
+            told += 1
+    assert told >= 6

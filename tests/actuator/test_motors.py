@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pareto_monoped.actuator.motor import PEAK_TO_CONTINUOUS
+from pareto_monoped.actuator.motor import PEAK_TO_CONTINUOUS, motor_order
 from pareto_monoped.actuator.motors import load_motor, motor_names, motor_values, stored_motor
 from pareto_monoped.errors import DatabaseError, MotorError
 
@@ -236,3 +236,11 @@ def test_unknown_names_and_missing_files():
         load_motor("VT8021")
     with pytest.raises(MotorError, match="no such file"):
         load_motor("nowhere.toml")
+
+
+def test_a_frameless_motor_is_ordered_with_the_sizes_that_tell_it_from_the_framed_one():
+    """Makers list some of them framed only (U12): the order says what is taken of it."""
+    motor = load_motor("U12")
+    kit = "stator and rotor without frame, stator 70 x 95 mm, 578 g together"
+    assert motor_order(motor, "frameless").text == f"motor U12, frameless, 120 rpm/V, T-Motor U12, {kit}"
+    assert motor_order(motor, "framed").text == "motor U12, framed, 120 rpm/V, T-Motor U12"

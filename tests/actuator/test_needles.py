@@ -16,7 +16,8 @@ from pareto_monoped.actuator.needles import (
     roller_bearing,
     static_rating_n,
 )
-from pareto_monoped.actuator.planet_bearings import _stacked
+from pareto_monoped.actuator.planet_bearings import _ring_kind, _stacked
+from pareto_monoped.actuator.search import map_for
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.errors import InputError
 
@@ -98,3 +99,10 @@ def test_two_rows_stand_at_the_ends_of_the_bore_with_the_spacer_between_them():
         [9.0, 11.0],
         2.0,
     )
+
+
+def test_washers_are_ordered_by_the_kind_of_ring_that_has_their_thickness():
+    """DIN 988 has hard support rings (S) and soft shims (PS), which the needles would wear; ours are 1.2 mm thick."""
+    assert (_ring_kind(1.2), _ring_kind(1.0)) == ("support ring DIN 988 - S", "shim ring DIN 988 - PS")
+    (washer,) = (part for part in map_for("VT8020").lookup(6.0).parts if part.name == "planet_washer")
+    assert [one.designation for one in washer.purchases] == ["support ring DIN 988 - S 6 x 12 x 1.2"]

@@ -1,14 +1,17 @@
 """What drawings and parts list say of teeth and raceways, against what the ratings of gears and needles assume."""
 
 import math
+import re
 from dataclasses import replace
 
 import pytest
 
+from pareto_monoped.actuator.layout import shoulder_note
 from pareto_monoped.actuator.needles import needle_rows, raceway_factor
 from pareto_monoped.actuator.rating.load import runout_um
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.drawing.part_sheet import round_part, round_tables
+from pareto_monoped.geometry.gears import ExternalGear
 from pareto_monoped.geometry.roles import Group, Role
 from pareto_monoped.materials import GEAR_GRADES
 
@@ -144,3 +147,25 @@ def test_grades_say_what_their_drawings_need():
     for grade in GEAR_GRADES.values():
         assert (grade.layer_modules is None) == (grade.treatment == "through_hardened")
         assert grade.making
+
+
+@pytest.mark.parametrize(("neck", "shaft"), [(3.8, 4.0), (3.8, 3.0), (3.0, 5.0), (3.0, 3.0)])
+def test_the_sun_says_how_far_its_tool_runs_out_into_wider_shoulders(neck, shaft):
+    """A disc of 12 mm radius that touches the roots stands above the shoulder from there on, and not 0.5 mm before."""
+    gear = ExternalGear(teeth=16, module_mm=0.5, backlash_mm=0.01)
+    note = shoulder_note(gear, neck, shaft)
+    for radius, name in ((neck, "neck"), (shaft, "shaft")):
+        found = re.search(rf"([\d.]+) mm into the {name}", note)
+        assert bool(found) == (radius > gear.root_radius_mm)
+        if found:
+            before, there = (
+                gear.root_radius_mm + 12.0 - math.sqrt(144.0 - x**2) for x in (float(found[1]) - 0.5, float(found[1]))
+            )
+            assert before < radius <= there
+    assert bool(note) == (max(neck, shaft) > gear.root_radius_mm)
+
+
+def test_the_note_of_a_sun_with_few_teeth_has_its_run_outs():
+    built = [entry.actuator for entry in map_for("MAD_M6C12").entries if entry.actuator is not None]
+    notes = {part.note for found in built for part in found.parts if part.name == "sun"}
+    assert any("into the neck" in note for note in notes)

@@ -78,6 +78,27 @@ def test_the_parts_list_gives_whole_links_and_the_bar_s_length(leg):
     assert notes["turnbuckle_nut_knee"].startswith("thin nut ISO 4035 - M5-LH - 05")
 
 
+def test_threads_and_pins_of_the_turnbuckles_are_said_in_full(leg):
+    """Hand, class and length of each; the chain's pin is riveted into reamed holes and is no part of the fork."""
+    parts = parts_of(400.0, leg)
+    notes = {name: part.note for name, part in parts.items()}
+    stud = "17.5 mm long without undercut, run-out before the fork 1 mm at most"  # 10 + 7.5 mm, as drawn
+    assert f"right-hand stud M5x0.8 - 6g, {stud}" in notes["turnbuckle_end_hip"]
+    assert f"left-hand stud M5x0.8 LH - 6g, {stud}" in notes["turnbuckle_end_knee"]
+    assert "tapped M5x0.8 - 6H at one end and M5x0.8 LH - 6H at the other" in notes["turnbuckle_bar"]
+    assert "14.5 mm deep at least with a bottoming tap, drill 4.2 mm, 16 mm deep" in notes["turnbuckle_bar"]
+    for end in ("hip", "knee"):
+        assert "the pin is no part of it: it is the chain's own" in notes[f"turnbuckle_end_{end}"]
+        assert f"holes {leg.chain.pin_diameter_mm:g} H7 that are reamed" in notes[f"turnbuckle_end_{end}"]
+        heights = [
+            y
+            for prism in parts[f"turnbuckle_end_{end}"].prisms[-1:]
+            for line in prism.outline.pieces
+            for y in (line.y0_mm, line.y1_mm)
+        ]
+        assert max(heights) - min(heights) == pytest.approx(17.5)
+
+
 def test_only_the_bars_grow_with_the_thigh(leg):
     short, long = parts_of(300.0, leg), parts_of(500.0, leg)
     for name, part in short.items():

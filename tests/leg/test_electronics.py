@@ -130,3 +130,8 @@ def test_a_board_carries_just_what_its_data_sheet_says():
     assert just.carries(motor)
     assert not dataclasses.replace(just, voltage_v=0.999 * just.voltage_v).carries(motor)
     assert not dataclasses.replace(just, peak_current_a=0.999 * just.peak_current_a).carries(motor)
+
+
+def test_standoffs_are_ordered_with_the_threads_that_both_screws_need(leg):
+    parts = {part.name: part for part in base_parts(0.09, with_driver(leg, ODRIVE))}
+    assert parts["hip_standoff"].described.endswith("5.5 mm across flats, aluminium, female threads from both ends")

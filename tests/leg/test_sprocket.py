@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from pareto_monoped.leg.dimensions import CHAIN_DRIVES
-from pareto_monoped.leg.sprocket import sprocket_outline, sprocket_prisms
+from pareto_monoped.leg.sprocket import sprocket_outline, sprocket_prisms, support_parts
 from tests.leg.polygons import polygon
 
 LIGHT, _, HEAVY = CHAIN_DRIVES
@@ -41,3 +41,9 @@ def test_heads_are_sunk_in_a_wide_sprocket_only(leg):
     assert counterbored.z1_mm == rest.z0_mm == pytest.approx(-2.2 + 0.4)
     # A cap head of M3 is 5.5 mm wide (ISO 4762).
     assert 2.0 * counterbored.holes[1].radius_mm > 5.5 > 2.0 * rest.holes[1].radius_mm > 3.0
+
+
+def test_the_shaft_says_how_the_dowels_of_its_soft_flange_fit(leg):
+    shaft, _ = support_parts(leg, 15.0, (leg.drive_dowel,))
+    size = f"{leg.drive_dowel.count:g} holes of {2.0 * leg.drive_dowel.radius_mm:g} mm for dowels are reamed to H7"
+    assert f"the flange stays soft: its {size} together with drive sprocket and drive coupling" in shaft.note

@@ -134,21 +134,24 @@ def test_notes_for_the_maker_give_the_sizes_that_are_drawn(design, actuator_map)
         "knee_bumper_flexion": "round bar FKM 75 Shore A, 28 mm, cut to 28 mm",
         "knee_striker_bolt": (
             "countersunk screw ISO 10642 - M4 x 16 - 8.8; sleeve nut M4 x 30, countersunk 90 degrees, 5 mm outside, "
-            "steel; flush, 39 mm together"
+            "internal hex or slot, steel zinc plated; flush, 39 mm together"
         ),
         "base_far_cheek": "8 mm plate",
         "base_bearing": "NSK 6804VVC3, 20 x 32 x 7 mm",
-        "base_rod": "10 mm tube; the test stand's carriage clamps to the rods",
+        "base_rod": "10 mm bar, drilled from both ends; the test stand's carriage clamps to the rods",
         "thigh_plate_inner": "2.5 mm sheet",
         "thigh_plate_outer": "2.5 mm sheet; carries the knee actuator",
         "thigh_standoff": "spigot into the inner plate, screwed to the outer one",
         "thigh_bolt": (
             "countersunk screw ISO 10642 - M3 x 16 - 8.8; sleeve nut M3 x 20, countersunk 90 degrees, 4 mm outside, "
-            "steel; flush, 29 mm together"
+            "internal hex or slot, steel zinc plated; flush, 29 mm together"
         ),
         "drive_sprocket": "084, 14 teeth (ISO 606)",
         "knee_bearing": "NSK 6804VVC3, 20 x 32 x 7 mm",
-        "journal_screw": "cap screw ISO 4762 - M5 x 12 - 8.8; into the knee motor's own mounting pattern",
+        "journal_screw": (
+            "cap screw ISO 4762 - M5 x 12 - 8.8; through the knee actuator's backplate into the threads in its motor's "
+            "base"
+        ),
         "knee_bolt": "cap screw ISO 4762 - M4 x 45 - 8.8; nut ISO 4032 - M4 - 8; clamps the whole knee",
     }.items():
         assert notes[name] == note, name

@@ -74,19 +74,28 @@ class Bore:
         if thread is not None:
             usable = self.feature.thread_mm if self.feature is not None else None
             long = f", {number(float(usable))} deep" if usable is not None else depth
-            drill = f", drill Ø{number(2.0 * self.radius)}{depth}" if long or depth else " through"
+            drill = f", drill Ø{number(2.0 * self.radius)}{depth or ' through'}" if long else " through"
             return f"{thread.text}{long}{drill}"
         zone = f" {self.fit.zone}" if self.fit is not None else ""
         return f"Ø{number(2.0 * self.radius)}{zone}{depth or ' through'}"
 
     def details(self, *, from_above: bool) -> Iterator[str]:
-        """Countersinks, chamfers and lead-ins, by the side that they are on; a note gives those of threads."""
+        """Countersinks, chamfers and lead-ins, by the side that they are on; a note gives those of threads.
+
+        A thread that is shorter than its hole has the side that it is cut from, which no drawn edge shows; one to the
+        bottom of its hole leaves no run-out to the usual tap.
+        """
         threaded = self.feature is not None and self.feature.thread is not None
         said = [
             (self._countersink(mouth) if mouth.kind is Cone.COUNTERSINK else self._chamfer(mouth), above == from_above)
             for mouth, above in zip(self.mouths, (False, True), strict=True)
             if mouth is not None and (mouth.kind is Cone.COUNTERSINK or (not threaded and self._ends_at_mouth(above)))
         ]
+        if threaded and self.through and self.feature is not None and self.feature.thread_mm is not None:
+            near, far = (self.mouths[above] is not None for above in (from_above, not from_above))
+            yield f"tapped from {'both sides' if near and far else 'this side' if near else 'the far side'}"
+        if threaded and not self.through and self.feature is not None and self.feature.thread_mm is None:
+            yield "bottoming tap"
         for text in dict.fromkeys(text for text, _ in said):
             sides = {near for other, near in said if other == text}
             yield f"{text}{', both sides' if len(sides) == 2 else '' if True in sides else ', far side'}"

@@ -30,6 +30,7 @@ from pareto_monoped.geometry.making import (
     limits,
     thickness_tolerance_mm,
 )
+from pareto_monoped.geometry.shapes import Numbers
 
 _PIN_MODULES = 1.68  # diameter of measuring pins over module, so that they touch near the pitch circle (DIN 3960)
 _SEAT_RA, _FIT_RA, _RACEWAY_RA = "0.8", "1.6", f"{RACEWAY_RA_UM:g}"
@@ -138,9 +139,7 @@ def gear_rows(
         ),
         ("Profile shift x, outwards", number(round(float(gear.shift), 4))),
         ("Pitch diameter", number(2.0 * float(gear.pitch_radius_mm))),
-        ("Tip diameter", _tip(gear)),
-        ("Form diameter, involute from there", number(round(2.0 * float(gear.form_radius_mm), 3))),
-        ("Root diameter", number(round(2.0 * float(gear.root_radius_mm), 3))),
+        *(_hole_circles(gear) if spline else _circles(gear)),
         measured,
         ("Tooth thickness tolerance", f"DIN 3967, series {series}"),
         ("Accuracy of the teeth", f"ISO 1328-1 class {grade or 8}"),
@@ -152,9 +151,28 @@ def gear_rows(
     ]
 
 
-def _tip(gear: ExternalGear | InternalGear) -> str:
-    """Return the tip diameter with its class and limits: a tip may be lower, but never reach farther into its mate."""
-    diameter, zone = 2.0 * float(gear.tip_radius_mm), "H9" if isinstance(gear, InternalGear) else "h9"
+def _circles(gear: ExternalGear | InternalGear) -> list[tuple[str, str]]:
+    """Return tip, form and root diameter: a tip may be lower, but never reach farther into its mate."""
+    return [
+        ("Tip diameter", _toleranced(gear.tip_radius_mm, "H9" if isinstance(gear, InternalGear) else "h9")),
+        ("Form diameter, involute from there", number(round(2.0 * float(gear.form_radius_mm), 3))),
+        ("Root diameter", number(round(2.0 * float(gear.root_radius_mm), 3))),
+    ]
+
+
+def _hole_circles(shaft: ExternalGear | InternalGear) -> list[tuple[str, str]]:
+    """Return the same of a hole that has a splined shaft's outline: it may be wider on both circles, never narrower."""
+    return [
+        ("Outer diameter, clear of the shaft's tips", _toleranced(shaft.tip_radius_mm, "H9")),
+        ("Inner diameter, clear of the shaft's roots", _toleranced(shaft.root_radius_mm, "H9")),
+        ("Involute from the diameter", number(round(2.0 * float(shaft.form_radius_mm), 3))),
+        ("Fit and gap of the adhesive", "on the flanks"),
+    ]
+
+
+def _toleranced(radius_mm: Numbers, zone: str) -> str:
+    """Return a diameter with its class and limits."""
+    diameter = 2.0 * float(radius_mm)
     return f"{number(round(diameter, 3))} {zone} ({_limits(Fit(diameter_mm=diameter, zone=zone))})"
 
 

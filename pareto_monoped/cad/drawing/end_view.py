@@ -73,6 +73,17 @@ def bore_lines(bore: Bore, *, from_above: bool, far_side: bool) -> list[str]:
     return lines + list(bore.details(from_above=from_above))
 
 
+def _span(part: RoundPart, bore: Bore) -> list[str]:
+    """Return between which running lengths holes stand, where others have another length or place.
+
+    Flanges at both ends have holes that look alike from here.
+    """
+    if all(abs(bore.low - one.low) < _SAME_MM and abs(bore.high - one.high) < _SAME_MM for one in part.bores):
+        return []
+    near, far = sorted(abs(z - part.datum) for z in (bore.low, bore.high))
+    return [f"between {number(near)} and {number(far)}"]
+
+
 def _open(part: RoundPart, bore: Bore, *, from_above: bool) -> bool:
     """Return whether a viewer along the axis looks onto the mouth of a hole."""
     x, y = bore.centres[0]
@@ -105,7 +116,10 @@ def _callouts(paper: Paper, part: RoundPart, scale: float, datum: str | None, ou
     entries = [
         (
             bore,
-            bore_lines(bore, from_above=part.from_above, far_side=not (bore.through or _visible(part, bore))),
+            [
+                *bore_lines(bore, from_above=part.from_above, far_side=not (bore.through or _visible(part, bore))),
+                *_span(part, bore),
+            ],
             ()
             if bore.place_mm is None
             else (f"Ø{number(bore.place_mm)}", *filter(None, (datum or (DATUM if own and bore is not own else None),))),

@@ -83,6 +83,19 @@ def round_notes(drawn: RoundPart) -> Iterator[str]:
     yield f"Lengths run from the face marked with a circle, z = {drawn.datum:g} mm in the model."
 
 
+def axis_threads(part: Part, datum_mm: float) -> Iterator[str]:
+    """Yield the threads on a round part's own axis, which the end view does not call out."""
+    for bore in bores(part, on_axis=True):
+        feature = bore.feature
+        if feature is None or feature.thread is None or bore.count > 1 or any(map(bool, bore.centres[0])):
+            continue
+        ends = [
+            number(abs(end - datum_mm)) for end, mouth in zip((bore.low, bore.high), bore.mouths, strict=True) if mouth
+        ]
+        where = f"faces at {' and '.join(sorted(ends, key=float))}" if len(ends) > 1 else f"face at {ends[0]}"
+        yield f"Tapped on the axis from the {where}: {bore.size()}."
+
+
 def part_sheet(part: Part) -> Sheet:
     """Return the sheet of a part without its title block; ``ValueError`` if no sheet is large enough."""
     said = [part.note, part.joint.text if part.joint else ""]
@@ -93,7 +106,7 @@ def part_sheet(part: Part) -> Sheet:
         bare = (high - low + (2.0 * top if drawn.bores else 0.0), 2.0 * top)
         readable = _READABLE_MM / max(high - low, 2.0 * top)
         tables = round_tables(part, drawn)
-        notes = [*round_notes(drawn), *notes]
+        notes = [*round_notes(drawn), *axis_threads(part, drawn.datum), *notes]
         return placed(bare, readable, lambda scale: round_views(drawn, scale), tables, notes)
     plan = plan_of(part)
     x0, y0, x1, y1 = plan.bounds

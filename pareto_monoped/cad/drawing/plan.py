@@ -54,6 +54,10 @@ class Plan:
         """Whether it is one layer of one thickness."""
         return len(self.layers) == 1
 
+    def passed_by(self, bore: Bore) -> bool:
+        """Return whether holes go from one end of the part to the other."""
+        return abs(bore.low - self.low) < 1e-6 and abs(bore.high - self.high) < 1e-6
+
 
 def plan_of(part: Part) -> Plan:
     """Return the part turned and moved: long side along the sheet, origin at its own axis if it has a hole there."""

@@ -267,8 +267,7 @@ def _place_names(paper: Paper, tags: Sequence[Tag], scale: float) -> None:
 
 
 def _has_section(plan: Plan) -> bool:
-    flush = all(abs(bore.low - plan.low) < 1e-6 and abs(bore.high - plan.high) < 1e-6 for bore in plan.bores)
-    return not (plan.is_flat and flush)
+    return not (plan.is_flat and all(map(plan.passed_by, plan.bores)))
 
 
 def plan_tables(plan: Plan, part: Part) -> tuple[list[Paper], list[Tag]]:
@@ -339,7 +338,7 @@ def _hole_rows(plan: Plan, axis: Fit | None) -> tuple[list[tuple[str, ...]], lis
     pattern = fitted[0] if axis is None and fitted else None
     kinds: dict[str, list[Bore]] = {}
     for bore in plan.bores:
-        kinds.setdefault(_kind(bore), []).append(bore)
+        kinds.setdefault(_kind(bore, plan), []).append(bore)
     rows: list[tuple[str, ...]] = []
     tags: list[Tag] = []
     for bore in [pattern] if pattern is not None else plan.bores:
@@ -365,15 +364,16 @@ def _hole_rows(plan: Plan, axis: Fit | None) -> tuple[list[tuple[str, ...]], lis
     return rows, tags
 
 
-def _kind(bore: Bore) -> str:
-    """Return what the holes of one letter have in common."""
+def _kind(bore: Bore, plan: Plan) -> str:
+    """Return what the holes of one letter have in common, and between which z those are that pass only part of it."""
     text = bore.size()
     if isinstance(bore.shape, Pattern):
         turn = 360.0 / bore.count
         first = round(float(np.degrees(bore.shape.phase_rad)) % turn, 3) % round(turn, 3)
         beginning = f", first at {number(first)}°" if first > 0.0 else ""
         text = f"{bore.count} {TIMES} {text} on Ø{number(2.0 * float(bore.shape.pitch_radius_mm))}{beginning}"
-    return ", ".join([text, *bore.details(from_above=True)])
+    span = [] if plan.passed_by(bore) else [f"z {number(bore.low - plan.low)} to {number(bore.high - plan.low)}"]
+    return ", ".join([text, *bore.details(from_above=True), *span])
 
 
 def _contour_rows(plan: Plan, part: Part) -> tuple[list[tuple[str, ...]], list[tuple[str, ...]], list[Tag]]:

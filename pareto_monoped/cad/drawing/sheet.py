@@ -77,7 +77,14 @@ def compose(size: Size, views: Sequence[Paper], tables: Sequence[Paper], notes: 
     note_height = note_box[3] - note_box[1]
     table_boxes = [table.box() for table in tables]
     beside = size is not A4
-    floor = bottom + (max(TITLE_MM[1], note_height) if beside else TITLE_MM[1] + note_height + _SPACE_MM) + 2.0
+    # A last line that reaches the middle of the sheet would run into its centring mark.
+    reaches = beside and bool(notes) and left + 4.0 + written.labels[-1].box()[2] > 0.5 * size.width_mm - 1.0
+    under = _CENTRING_MM + 1.0 if reaches else 3.0
+    floor = (
+        bottom
+        + (max(TITLE_MM[1], note_height + under - 3.0) if beside else TITLE_MM[1] + note_height + _SPACE_MM)
+        + 2.0
+    )
     placing = _columned(table_boxes, top - floor) if beside else _shelved(table_boxes, right - left - 8.0)
     if placing is None:
         return None
@@ -95,7 +102,7 @@ def compose(size: Size, views: Sequence[Paper], tables: Sequence[Paper], notes: 
     corner = (right, top) if beside else (left + 4.0, floor)
     for table, box, (dx, dy) in zip(tables, table_boxes, places, strict=True):
         paper.lay(table, corner[0] + dx - box[0], corner[1] + dy - box[1])
-    paper.lay(written, left + 4.0, bottom + 3.0 + (0.0 if beside else TITLE_MM[1]) - note_box[1])
+    paper.lay(written, left + 4.0, bottom + under + (0.0 if beside else TITLE_MM[1]) - note_box[1])
     return paper
 
 

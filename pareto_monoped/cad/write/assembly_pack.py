@@ -21,7 +21,7 @@ from pareto_monoped.cad.write import meshes
 from pareto_monoped.cad.write.tables import cables_csv, hardware, items, tightening
 from pareto_monoped.errors import CheckError
 from pareto_monoped.geometry.parts import Part
-from pareto_monoped.geometry.roles import FASTENERS, JointKind, Role
+from pareto_monoped.geometry.roles import FASTENERS, GREASE, JointKind, Role
 from pareto_monoped.geometry.shapes import Shape
 
 # Our own layout, mm.
@@ -160,6 +160,7 @@ def _step(step: Step, blocking: Blocking) -> Iterator[str]:
     elif step.base_number != step.number - 1:
         yield f"<li>Take what step {step.base_number} has made.</li>"
     yield from (f"<li>{_addition(addition, blocking)}</li>" for addition in step.additions)
+    yield from (f"<li>{line}</li>" for line in (*_bonded(step, blocking), *_greased(step, blocking)))
     for k in step.fasteners:
         yield f"<li>{_fastener(k, blocking)}</li>"
     yield f"</ol><img src='step_{step.number:02d}.png' alt='step {step.number}' loading='lazy'></section>"
@@ -177,6 +178,39 @@ def _addition(addition: Addition, blocking: Blocking) -> str:
     how = f" {'They are' if several else 'It is'} {escape(joint.text.replace('_', ' '))}." if joint is not None else ""
     verb = "Put" if joint is None else _VERB.get(joint.kind, "Put")
     return f"{verb} {_listed(members, blocking)} in place {way}.{how}"
+
+
+def _made_before(step: Step) -> list[frozenset[int]]:
+    """Return what comes to a step from earlier ones, which have bonded and greased it."""
+    made = [addition.members for addition in step.additions if addition.number is not None]
+    return made if step.base_number is None else [step.base, *made]
+
+
+def _bonded(step: Step, blocking: Blocking) -> Iterator[str]:
+    """Yield the bonds between what a step brings together, but for those of single parts, whose own line has them."""
+    alone = {k for one in step.additions if one.number is None and len(one.members) == 1 for k in one.members}
+    for k in sorted(step.members - alone):
+        body = blocking.bodies[k]
+        joint = body.instance.part.joint
+        if joint is None or joint.adhesive is None:
+            continue
+        others = ((m, blocking.bodies[m]) for m in step.members)
+        partners = {m for m, other in others if (other.unit, other.instance.part.name) == (body.unit, joint.partner)}
+        if partners and not any(k in made and partners & made for made in _made_before(step)):
+            verb = "are" if len(body.instances) > 1 else "is"
+            yield f"Bond what comes together: {_counted(k, blocking)} {verb} {escape(joint.text.replace('_', ' '))}."
+
+
+def _greased(step: Step, blocking: Blocking) -> Iterator[str]:
+    """Yield what is greased as it is put in, a line for each grease."""
+    found: dict[str, list[str]] = {}
+    for k in sorted(step.members.difference(*_made_before(step))):
+        for order in blocking.bodies[k].instance.part.purchases:
+            if order.kind == GREASE.kind:
+                each = " each" if len(blocking.bodies[k].instances) > 1 else ""
+                found.setdefault(order.designation, []).append(f"{_counted(k, blocking)}, {order.count:.2f} g{each}")
+    for designation, places in found.items():
+        yield escape(f"Grease with {designation}: {'; '.join(places)}.")
 
 
 def _fastener(body: int, blocking: Blocking) -> str:

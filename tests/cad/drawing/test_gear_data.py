@@ -128,6 +128,17 @@ def test_rated_gears_have_the_finer_series_and_splines_the_other():
         assert greatest - least == pytest.approx(tolerance * np.cos(np.radians(20.0)), abs=1.1e-3)
 
 
+def test_a_splined_hole_is_toleranced_as_a_hole_and_clears_the_shaft_on_both_circles():
+    """Its circles are wider than the drawing, never narrower, so that only the flanks fit: no ``h`` stands there."""
+    shaft = ExternalGear(teeth=18, module_mm=0.5, backlash_mm=0.0)
+    rows = dict(gear_rows(shaft, accuracy_class=None, hole=True))
+    assert rows["Outer diameter, clear of the shaft's tips"] == "10 H9 (+0.036 / 0)"
+    assert rows["Inner diameter, clear of the shaft's roots"] == "7.75 H9 (+0.036 / 0)"
+    assert rows["Fit and gap of the adhesive"] == "on the flanks"
+    assert not any(name.startswith(("Tip diameter", "Root diameter")) for name in rows)
+    assert dict(gear_rows(shaft, accuracy_class=None))["Tip diameter"] == "10 h9 (0 / -0.036)"
+
+
 def test_the_table_names_what_a_gear_cutter_needs():
     rows = dict(gear_rows(ExternalGear(teeth=30, module_mm=0.5, backlash_mm=0.04), accuracy_class=6))
     assert rows["Teeth, external"] == "30"

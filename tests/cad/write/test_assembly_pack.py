@@ -54,6 +54,26 @@ def test_the_page_shows_every_picture_and_names_every_part(pack, listed):
     assert [u.part.name for u in listed if u.part.name.replace("_", " ") not in steps] == []
 
 
+def test_the_steps_name_every_adhesive_and_grease_where_its_part_is_put_in(pack, listed):
+    """Once per unit at least, in a line with the part, also where several parts come together."""
+    page = pack["assembly/index.html"].decode()
+    lines = re.findall(r"<li>(.*?)</li>", page[: page.index("<h2>Screws</h2>")])
+    bonds = greased = 0
+    for part, units in ((unique.part, unique.units) for unique in listed):
+        orders = [order for order in part.purchases if order.kind == "grease"]
+        bonds += part.joint is not None and part.joint.adhesive is not None
+        greased += len(orders)
+        if part.joint is not None and part.joint.adhesive is not None:
+            orders.append(part.joint.adhesive)
+        for order in orders:
+            said = [line for line in lines if part.name.replace("_", " ") in line and order.designation in line]
+            assert len(said) >= len(units), (part.name, order.designation)
+    assert (bonds >= 10, greased >= 8) == (True, True)
+    # A bond is made when the second of its parts comes, although the first stands in an earlier line or step.
+    together = [line for line in lines if line.startswith("Bond what comes together: ")]
+    assert any("ring is bonded into ring housing" in line for line in together)
+
+
 def test_every_screw_has_a_torque_and_a_lock(pack, listed):
     page = pack["assembly/index.html"].decode()
     table = page[page.index("<h2>Screws</h2>") : page.index("<h2>Chain</h2>")]
