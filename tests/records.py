@@ -65,4 +65,4 @@ def compare(found, path):
         for name, value in found.items()
         if value[::2] != expected[name][::2] or not np.isclose(value[1], expected[name][1], rtol=2e-10)
     }
-    assert not wrong, wrong
+    assert not wrong, f"{wrong}: look at what has changed; CONTRIBUTING.md says how signatures are made again"
