@@ -65,6 +65,8 @@ def test_a_colour_shows_a_measure_a_variable_or_the_third_objective(stored, tmp_
     dots = pm.plot_front(stored, color="thigh_length_m").data[-1]
     np.testing.assert_allclose(dots.marker.color, 1000.0 * stored.front()["thigh_length_m"])
     assert dots.marker.colorbar.title.text == "thigh length (mm)"
+    coloured = pm.plot_front(stored, color="peak_foot_force_n").data[-1]
+    assert any(line.startswith("peak foot force (N): ") for line in coloured.hovertemplate.split("<br>"))
     three = pm.Study.define(
         name="t", evaluations=60, algorithm="random", audit=False, objectives=["height_m", "energy_j", "mass_kg"]
     )
