@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from pareto_monoped.cad import jobs
 from pareto_monoped.cli.exports import _duration, _radians
 from tests.cli.support import STORED, run
 
@@ -75,6 +76,16 @@ def test_a_case_of_the_paper_is_exported_with_another_motor(capsys, tmp_path):
         "thigh_plate_inner.dxf",
         "thigh_plate_outer.dxf",
     ]
+
+
+@pytest.mark.parametrize(("words", "strength"), [((), None), (("--no-strength",), False)])
+def test_strength_is_asked_of_the_designs_of_a_front_unless_it_is_left_out(
+    capsys, tmp_path, monkeypatch, words, strength
+):
+    asked = []
+    monkeypatch.setattr(jobs, "front_jobs", lambda data, **how: asked.append(how) or [])
+    run(capsys, "export", STORED, "--front", *words, "-o", tmp_path / "out")
+    assert [how["strength"] for how in asked] == [strength]
 
 
 @pytest.mark.long

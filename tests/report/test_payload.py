@@ -25,6 +25,12 @@ from tests.report import conftest
 from tests.report.conftest import cut, grown
 
 
+def test_the_budget_is_that_of_the_last_run(source):
+    """A study that was resumed with another total has it there, and the first one in its settings."""
+    resumed = replace(source.data, meta=replace(source.data.meta, budget=777))
+    assert build([replace(source, data=resumed)]).studies[0].budget == 777
+
+
 def test_rows_are_the_trials(payload, data):
     (card,) = payload.studies
     assert card.trials.trial == data.trials["trial"].tolist()
