@@ -2,6 +2,8 @@
 
 import csv
 import io
+import re
+from importlib import resources
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from pareto_monoped.report.page import build, page
 from tests.report.conftest import grown, telling_mass_kg
 
 pytestmark = pytest.mark.browser
+ASSETS = resources.files("pareto_monoped") / "report" / "assets"
 
 
 @pytest.fixture
@@ -154,3 +157,13 @@ def test_without_scripts_and_in_print_the_plain_table_is_there(file, payload, br
     tab.medium("print", "light")
     assert tab.page.is_visible("#table .plain")
     assert not tab.page.is_visible("#rows")
+
+
+@pytest.mark.parametrize("cell", ['5" leg', "a, b", "two\nlines", "plain", "", '"', "-1.5"])
+def test_a_cell_of_a_csv_file_reads_back_as_it_was(tab, cell):
+    """A quotation mark alone must be quoted, too (RFC 4180)."""
+    source = (ASSETS / "table.js").read_text(encoding="utf-8")
+    function = re.search(r"^function csvCell\(.*?^}", source, re.M | re.S)[0]
+    line = tab.page.evaluate(f"cell => {{ {function}; return csvCell(cell) + ',end'; }}", cell)
+    assert next(csv.reader(io.StringIO(line, newline=""))) == [cell, "end"]
+    assert ('"' in line) == any(mark in cell for mark in ',\n"')
