@@ -321,6 +321,19 @@ def test_a_user_runs_it_from_the_command_line(living, tmp_path):
     assert "DESCRIPTIVE_REPRESENTATION_ITEM('printed plastic" in text
 
 
+def test_its_step_files_have_densities_in_grams_per_cubic_centimetre(names):
+    text = (
+        "#1 = PRODUCT('foot','foot','',(#9));\n#2 = PRODUCT_DEFINITION_FORMATION('','',#1);\n"
+        "#3 = PRODUCT_DEFINITION('design','',#2,#9);\n#4 = ( GEOMETRIC_REPRESENTATION_CONTEXT(3) );\n"
+    )
+    added = "".join(names["materials"](text))
+    (density,) = re.findall(r"POSITIVE_RATIO_MEASURE\(([\d.]+)\)", added)
+    assert 0.5 < float(density) < 2.0  # of rubber or printed plastic; water has 1
+    assert "SI_UNIT($,.GRAM.)" in added
+    assert "SI_UNIT(.CENTI.,.METRE.)" in added
+    assert added.count("DERIVED_UNIT_ELEMENT") == 2
+
+
 def test_only_the_parts_asked_for_are_made(names, tmp_path, monkeypatch):
     made = []
     monkeypatch.setitem(names, "solid", lambda name: SimpleNamespace(volume=1.0, is_valid=True))
