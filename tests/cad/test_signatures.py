@@ -1,6 +1,6 @@
-"""Every file of an export, and every sheet of a second robot, is as it was at commit be02a7d.
+"""Every file of an export, and every sheet of a second robot, is as it was when ``signatures.json`` was made.
 
-That is when ``signatures.json`` was made, after all other tests had passed. It says that something changed, not that
+That was after all other tests had passed. It says that something changed, not that
 it was right. After a change that is wanted, look at the files that the test names, and make it again:
 ``PARETO_MONOPED_SIGN=1 python -m pytest tests/cad/test_signatures.py tests/cad/drawing/test_sheets.py``.
 """

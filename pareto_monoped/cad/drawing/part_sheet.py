@@ -92,7 +92,7 @@ def axis_threads(part: Part, datum_mm: float) -> Iterator[str]:
         ends = [
             number(abs(end - datum_mm)) for end, mouth in zip((bore.low, bore.high), bore.mouths, strict=True) if mouth
         ]
-        where = f"faces at {' and '.join(sorted(ends, key=float))}" if len(ends) > 1 else f"face at {ends[0]}"
+        where = f"face{'s' if len(ends) > 1 else ''} at {' and '.join(sorted(ends, key=float))}"
         yield f"Tapped on the axis from the {where}: {bore.size()}."
 
 
