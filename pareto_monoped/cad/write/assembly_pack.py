@@ -187,7 +187,7 @@ def _made_before(step: Step) -> list[frozenset[int]]:
 
 
 def _bonded(step: Step, blocking: Blocking) -> Iterator[str]:
-    """Yield the bonds between what a step brings together, but for those of single parts, whose own line has them."""
+    """Yield the bonds between what a step brings together; the bond of a single part stands in that part's own line."""
     alone = {k for one in step.additions if one.number is None and len(one.members) == 1 for k in one.members}
     for k in sorted(step.members - alone):
         body = blocking.bodies[k]
