@@ -275,7 +275,8 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
             bored(Circle(radius_mm=rear_seat), z_plate, shell.z_seat, enters="high"),
             turned(at.r_casing, z_plate + SPIGOT_MM, -1.0),
         ),
-        note=f"step to fit the casing{register_note(at.r_casing, 'h7', 'the bore of the casing, H7')}",
+        note=f"step to fit the casing{register_note(at.r_casing, 'h7', 'the bore of the casing, H7')}; tap the motor's "
+        f"pattern before the rims of its pad are turned {_PAD_RIM_MM:g} mm beside the threads",
     )
 
 

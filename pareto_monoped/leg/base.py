@@ -192,11 +192,11 @@ def _rods(far_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                 room_mm=ROD_THREAD,
                 direction=direction,
                 places_mm=where,
-                note=note,
+                note="; ".join(filter(None, (note, last))),
             )
-            for side, seat_mm, grip_mm, direction in (
-                ("near", d.hip_mount_mm, d.cheek_mm, 1.0),
-                ("far", far_mm + d.far_cheek_mm, d.far_cheek_mm, -1.0),
+            for side, seat_mm, grip_mm, direction, last in (
+                ("near", d.hip_mount_mm, d.cheek_mm, 1.0, ""),
+                ("far", far_mm + d.far_cheek_mm, d.far_cheek_mm, -1.0, "tighten last, once the thigh has swung freely"),
             )
             for row, where, under_mm, note in (
                 ("lower", lower, 0.0, ""),

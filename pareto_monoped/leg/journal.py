@@ -54,6 +54,7 @@ _FLANGE_RIM = 5.0  # of metal outside the circle of the screws, whose heads stay
 _HEAD_ROOM = 6.5  # between flange and far cheek: heads of M5 are 5 mm high
 _FLOAT = 1.0  # from the shoulder to the bearing, which moves along the journal: both cheeks would else jam the leg
 _BEHIND = 1.0  # of the seat beyond the bearing, as far as the far cheek reaches
+_RUN_OUT = 0.05  # of the seat about the hip's axis, with the screws tight
 _WALL = 3.0  # between the bearing's seat and the bore for cables
 _THREAD = 6.0  # M5 x 10 in the backplate of an ISSPG, M5 x 12 through that of an ESSPG, 5 mm into its motor
 
@@ -117,4 +118,5 @@ def _screwed_into(back_clearance_mm: Numbers) -> str:
     if np.ndim(back_clearance_mm):
         return ""
     through = "through the knee actuator's backplate into the threads in its motor's base"
-    return through if back_clearance_mm else "into the threads in the knee actuator's backplate"
+    into = through if back_clearance_mm else "into the threads in the knee actuator's backplate"
+    return f"{into}; tighten with the seat's run-out at {_RUN_OUT:g} mm or less, measured as the thigh swings"

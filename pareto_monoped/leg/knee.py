@@ -31,7 +31,7 @@ _CUP_SCREWS = 4  # M2.5, in the middle of that wall
 _CUP_THREAD = 6.0  # usable depth in a cup, which is as deep as the bearing is wide
 # Our own layout of the axle, mm.
 _BOLTS, _BOLT_PITCH_RADIUS = 4, 5.5  # M4: 2.35 mm of metal between their holes and the bearing's seat
-AXLE_DOWEL = Dowel(diameter_mm=4.0)  # as many as bolts, in the gaps between them: 0.8 mm of metal between the holes
+AXLE_DOWEL = Dowel(diameter_mm=4.0)  # as many as bolts, in the gaps between them: 0.7 mm of metal between the holes
 _DOWEL_PITCH_RADIUS = 6.8  # 1.2 mm of metal to the bearing's seat
 DOWEL_DEPTH = 7.0  # in the axle: with the plate, 10 mm long ones fit
 # The nut of an axle bolt, M4 (ISO 4032), mm. The bolts are 7.8 mm apart, so that washers of 8 mm have no room.
@@ -127,7 +127,8 @@ def _axle(d: LegDimensions) -> Part:
         fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="h6", seat=True), AXLE_DOWEL.hole_fit),
         lengths=(narrower("shoulders", -shoulder, shoulder),),
         features=(turned(d.bearing_bore_radius_mm, half_gap, -1.0), turned(d.bearing_bore_radius_mm, -half_gap, 1.0)),
-        note=f"axle and sprocket in one piece; {d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
+        note="ream the holes of the dowels before the others are drilled beside them; axle and sprocket in one piece; "
+        f"{d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
     )
 
 

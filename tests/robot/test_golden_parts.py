@@ -150,7 +150,7 @@ def test_notes_for_the_maker_give_the_sizes_that_are_drawn(design, actuator_map)
         "knee_bearing": "NSK 6804VVC3, 20 x 32 x 7 mm",
         "journal_screw": (
             "cap screw ISO 4762 - M5 x 12 - 8.8; through the knee actuator's backplate into the threads in its motor's "
-            "base"
+            "base; tighten with the seat's run-out at 0.05 mm or less, measured as the thigh swings"
         ),
         "knee_bolt": "cap screw ISO 4762 - M4 x 45 - 8.8; nut ISO 4032 - M4 - 8; clamps the whole knee",
     }.items():

@@ -21,7 +21,15 @@ PLACE_FITTED_MM = 0.02
 size, so that planets share their load (our own choice)."""
 PLACE_SCREWS_MM = 0.1
 """Likewise of screws: half of the 0.2 mm by which an M3 clearance hole is wider (ISO 273, fine); two parts share it."""
-_SCREWS = (M25, M3, M4, M5)
+_HOLES_MM = (
+    *(2.0 * screw.hole for screw in (M25, M3, M4, M5)),  # ISO 273, fine
+    *(4.2, 5.2, 5.7),  # sleeve nuts for M3 and M4, heads of M3
+    4.0,  # dowels whose holes are reamed in place
+    10.2,  # the base's rods
+)
+"""Diameters of plain holes that something passes which another part holds in its place; others save weight."""
+_MOTOR_HOLES_MM = (3.5, 4.5, 5.5, 6.5)
+"""Likewise of patterns for a motor's own screws, M3 to M6 (ISO 273, medium)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,14 +61,13 @@ class Bore:
     @property
     def place_mm(self) -> float | None:
         """Diameter of the zone in which their axes must lie; None where general tolerances do."""
-        if self.fit is not None and self.count > 1:
+        if self.count == 1 and max(map(abs, self.centres[0])) < _SAME_MM:
+            return None
+        if self.fit is not None:
             return PLACE_FITTED_MM
-        return PLACE_SCREWS_MM if self.count > 1 and (self.feature is not None or self._passes_screws) else None
-
-    @property
-    def _passes_screws(self) -> bool:
-        """Whether they are as wide as a screw's clearance holes; wider ones save weight."""
-        return any(abs(self.radius - screw.hole) < _SAME_MM for screw in _SCREWS)
+        widths = _HOLES_MM + (_MOTOR_HOLES_MM if self.count > 1 else ())
+        passed = any(abs(2.0 * self.radius - width) < _SAME_MM for width in widths)
+        return PLACE_SCREWS_MM if self.feature is not None or passed else None
 
     @property
     def mouths(self) -> tuple[Mouth | None, Mouth | None]:

@@ -72,7 +72,7 @@ def compose(size: Size, views: Sequence[Paper], tables: Sequence[Paper], notes: 
     boxes = [view.box() for view in views]
     wide = sum(box[2] - box[0] for box in boxes) + _SPACE_MM * (len(boxes) + 1)
     low, high = min(box[1] for box in boxes), max(box[3] for box in boxes)
-    written = _written(notes, TITLE_MM[0] - 4.0 if size is A4 else right - left - TITLE_MM[0] - 12.0)
+    written = _written(notes, TITLE_MM[0] - 8.0 if size is A4 else right - left - TITLE_MM[0] - 12.0)
     note_box = written.box()
     note_height = note_box[3] - note_box[1]
     table_boxes = [table.box() for table in tables]

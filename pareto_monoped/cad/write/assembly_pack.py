@@ -136,7 +136,11 @@ def _page(
     yield "<h2>Steps</h2>"
     for step in steps:
         yield from _step(step, blocking)
-    yield "<h2>Screws</h2><p>Clean the threads, wet them with the locker, tighten crosswise.</p>"
+    yield (
+        "<h2>Screws</h2><p>Clean the threads, wet them with the locker, tighten crosswise. Countersunk heads carry 80 "
+        "percent of their threads (ISO 10642, ISO 14581; marked 08.8 and 010.9), so that they are tightened to 75 "
+        "percent of the proof stress instead of 90; their torque is no less because the cone rubs more.</p>"
+    )
     yield from _table(("screw", "count", "where", "torque", "lock"), _screws(product))
     yield from _chain(product)
     yield from _cables(product)

@@ -24,7 +24,7 @@ from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.geometry.features import Cone, Hole, ShaftEnd
 from pareto_monoped.geometry.gears import InternalGear
 from pareto_monoped.geometry.roles import Role
-from pareto_monoped.geometry.shapes import Pattern
+from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.robot.build import build_robot
 from tests.cad.drawing.crossings import crossed
 from tests.cad.signed import of_pdf
@@ -346,6 +346,44 @@ def test_a_fitted_pattern_of_holes_has_a_frame_with_its_position(sheets):
             assert values[f"Ø{number(hole.place_mm)}"] >= 1, part.name
         assert len(squares) >= len(placed), part.name
     assert frames >= 2
+
+
+def _axes(part, centres):
+    """Where axes of a part are in its unit's frame, as complex numbers, and its height there, at every place."""
+    for x, y, z in part.places_mm:
+        for k in range(int(part.count) if float(part.pitch_radius_mm) else 1):
+            turn = np.exp(1j * (float(part.phase_rad) + 2.0 * np.pi * k / int(part.count)))
+            yield from ((complex(x, y) + turn * (float(part.pitch_radius_mm) + complex(*at)), z) for at in centres)
+
+
+def _passed(hole, part, others):
+    """Whether a round body of another part fills a hole but for 0.3 mm."""
+    for axis, z in _axes(part, hole.centres):
+        for other in others:
+            for prism in (one for one in other.prisms if isinstance(one.outline, Circle)):
+                if not -0.1 < hole.radius - float(prism.outline.radius_mm) < 0.3:
+                    continue
+                for place, height in _axes(other, [(prism.outline.x_mm, prism.outline.y_mm)]):
+                    low, high = height + prism.z0_mm, height + prism.z1_mm
+                    if abs(axis - place) < 1e-6 and min(high, z + hole.high) > max(low, z + hole.low) + 1e-6:
+                        return True
+    return False
+
+
+@pytest.mark.parametrize(("case", "motor"), [("A", "VT8020"), ("C", "MAD_M6C12"), ("B", "U12")])
+def test_every_hole_that_something_fills_off_its_axis_has_a_zone_for_its_place(case, motor):
+    """The holes of base rods, sleeve nuts and dowels had general tolerances: 0.3 mm at 92 mm, with 0.3 mm of play."""
+    filling = {Role.SCREW, Role.BOLT, Role.PIN, Role.ROD, Role.STATOR_SCREW}
+    found = set()
+    for unit in build_robot(PAPER_CASES[case].design, map_for(motor, "iso6336")).units:
+        others = [part for part in unit.parts if part.role in filling]
+        for part in (part for part in unit.parts if part.process != "bought" and part.role not in filling):
+            for hole in bores(part):
+                if max(map(abs, hole.centres[0])) > 1e-6 and _passed(hole, part, others):
+                    found.add(part.name)
+                    assert hole.place_mm is not None, (part.name, hole.size())
+                    assert hole.place_mm <= 0.1, (part.name, hole.size())
+    assert found >= {"base_near_cheek", "base_far_cheek", "thigh_plate_inner", "shank_core", "hip_seat_front"}
 
 
 def test_countersinks_are_of_90_degrees(sheets):
