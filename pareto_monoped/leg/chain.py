@@ -166,9 +166,9 @@ def _fastened(
             ),
             note=f"fork with {hand} stud {thread.text}, {TRAVEL + _NUT + _SPARE + _STUD_DEPTH:g} mm long without "
             f"undercut, run-out before the fork {_RUN_OUT:g} mm at most: keep the nut clear of it at the short end of "
-            "the travel; drawn as a square of its area; the pin is no part of it: it is the chain's own, through "
-            f"holes {pin.text} that are reamed in line through both cheeks, and through the chain's inner link, and is "
-            "riveted",
+            "the travel; drawn as a square of its area; the pin, drawn as a boss, is no part of it: it is the chain's "
+            f"own, through holes {pin.text} that are reamed in line through both cheeks, and through the chain's inner "
+            "link, and is riveted",
         ),
         steel_part(
             name=f"turnbuckle_nut_{end}",

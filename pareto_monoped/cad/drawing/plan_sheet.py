@@ -83,10 +83,13 @@ def axis_tags(scale: float) -> list[Tag]:
 
 
 def section_place(plan: Plan) -> float:
-    """Return where the section is taken: through the axis of the largest round hole, or the middle."""
+    """Return where the section is taken: through the axis of the largest round hole or else boss, or the middle."""
     x0, _, x1, _ = plan.bounds
-    wide = max((bore for bore in plan.bores), key=lambda bore: bore.radius, default=None)
-    return wide.centres[0][0] if wide is not None else 0.5 * (x0 + x1)
+    if plan.bores:
+        return max(plan.bores, key=lambda bore: bore.radius).centres[0][0]
+    bosses = [layer.outline.circle for layer in plan.layers if layer.outline.circle is not None]
+    wide = max(bosses, key=lambda circle: float(circle.radius_mm), default=None)
+    return 0.5 * (x0 + x1) if wide is None else float(wide.x_mm)
 
 
 def section_marks(paper: Paper, plan: Plan, scale: float) -> None:

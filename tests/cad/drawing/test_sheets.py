@@ -14,8 +14,8 @@ from pareto_monoped.cad.drawing.drawings import pdf
 from pareto_monoped.cad.drawing.end_view import _pointed, draw_bore
 from pareto_monoped.cad.drawing.paper import TIMES, Paper, overlapping
 from pareto_monoped.cad.drawing.part_sheet import part_sheet, round_part
-from pareto_monoped.cad.drawing.plan import is_square, plan_of, repeats, rounded_rectangle
-from pareto_monoped.cad.drawing.plan_sheet import _APART_MM, _with_detail, plan_tables, section_marks
+from pareto_monoped.cad.drawing.plan import cut_along, is_square, plan_of, repeats, rounded_rectangle
+from pareto_monoped.cad.drawing.plan_sheet import _APART_MM, _with_detail, plan_tables, section_marks, section_place
 from pareto_monoped.cad.drawing.profile import cylinders, faces, half_section, is_round, teeth_of
 from pareto_monoped.cad.drawing.section import diameter_text
 from pareto_monoped.cad.drawing.sheet import MARGIN_MM, SCALES, SIZES, TITLE_MM, Title, titled
@@ -25,6 +25,7 @@ from pareto_monoped.geometry.features import Cone, Hole, ShaftEnd
 from pareto_monoped.geometry.gears import InternalGear
 from pareto_monoped.geometry.roles import Role
 from pareto_monoped.geometry.shapes import Circle, Pattern
+from pareto_monoped.leg.chain import CHEEK
 from pareto_monoped.robot.build import build_robot
 from tests.cad.drawing.crossings import crossed
 from tests.cad.signed import of_pdf
@@ -420,6 +421,18 @@ def test_a_section_is_marked_by_an_arrow_and_its_letter_at_each_end(sheets):
         assert head.points[0].tolist() == [x1, y1]
         assert x0 - 2.0 < letter.box()[2] < x0
         assert letter.y + 0.5 * letter.height_mm == pytest.approx(y0)
+
+
+def test_the_section_of_a_fork_shows_its_slot(sheets):
+    """It went through the stud, in the middle of the sheet, and showed a square: nothing of the fork around it."""
+    fork = next(part for part, *_ in sheets if part.name == "turnbuckle_end_hip")
+    plan = plan_of(fork)
+    (pin,) = (layer.outline.circle for layer in plan.layers if layer.outline.circle is not None)
+    assert section_place(plan) == pin.x_mm
+    # Along the edge of the cut, beside the pin, only the cheeks are left.
+    edge = shapely.box(plan.low, plan.bounds[1], plan.high, plan.bounds[1] + 0.1)
+    cheeks = shapely.get_parts(cut_along(plan, section_place(plan)).intersection(edge))
+    assert [piece.bounds[2] - piece.bounds[0] for piece in cheeks] == pytest.approx([CHEEK, CHEEK])
 
 
 def test_sheets_have_the_sizes_of_the_a_series():
