@@ -15,9 +15,10 @@ from pareto_monoped.actuator.features import (
     spigot,
     tube,
 )
-from pareto_monoped.actuator.layout import ExternalLayout, Layout, register_note, vents
+from pareto_monoped.actuator.layout import ExternalLayout, Layout, vents
 from pareto_monoped.actuator.motor import Motor
 from pareto_monoped.actuator.settings import ActuatorSettings
+from pareto_monoped.geometry.dowels import Dowel
 from pareto_monoped.geometry.features import bored, turned
 from pareto_monoped.geometry.making import FINE_MM, Fit, Length, narrower, wider
 from pareto_monoped.geometry.parts import Part, steel_part
@@ -73,7 +74,7 @@ def _ring_housing(at: Layout, shell: ExternalLayout, settings: ActuatorSettings)
             fits=(
                 Fit(diameter_mm=2.0 * at.r_seat, zone="H7", seat=True),
                 Fit(diameter_mm=2.0 * at.r_ring, zone="H7", seat=True),
-                Fit(diameter_mm=settings.parts.interface.mount_dowel_mm, zone="H7"),
+                Dowel(diameter_mm=settings.parts.interface.mount_dowel_mm).hole_fit,
                 Fit(diameter_mm=ring.groove_diameter_mm, zone=ring.groove_zone),
             ),
             lengths=(
@@ -135,8 +136,8 @@ def _casing_and_backplate(
                 wider("ring seat", at.z_gear_back, z_flange),
                 Length(name="length", z0_mm=z_plate, z1_mm=z_flange, lower_mm=0.0, upper_mm=2.0 * FINE_MM),
             ),
-            note=f"bore and faces in one clamping{register_note(at.r_ring, 'H7', 'the ring')}"
-            f"{register_note(at.r_casing, 'H7', f'the step of the backplate over {SPIGOT_MM:g} mm')}",
+            registers=(Fit(diameter_mm=2.0 * at.r_ring, zone="H7"), Fit(diameter_mm=2.0 * at.r_casing, zone="H7")),
+            note=f"bores and faces in one clamping; one for the ring, one for the backplate's step, {SPIGOT_MM:g} mm",
         ),
         housing_part(
             name="backplate",
@@ -154,7 +155,8 @@ def _casing_and_backplate(
                 *spigot(z_plate, at, settings),
             ),
             features=(turned(at.r_casing, z_plate + SPIGOT_MM, -1.0),),
-            note=f"step to fit the casing{register_note(at.r_casing, 'h7', 'the bore of the casing, H7')}",
+            registers=(Fit(diameter_mm=2.0 * at.r_casing, zone="h7"), Fit(diameter_mm=2.0 * BACK_BORE_MM, zone="H7")),
+            note="the step is the register in the casing; the bore takes the encoder's cap",
         ),
     )
 

@@ -133,7 +133,7 @@ def coupling_dowels(holes: Pattern, end_mm: Numbers, room_mm: Numbers, reamed: s
         holes=holes,
         group=Group.ROTOR,
         partner="coupling",
-        note=f"drill and ream the {reamed} through the coupling",
+        note=f"drill and ream the {reamed} through the coupling, which is the jig",
     )
 
 
@@ -332,9 +332,7 @@ def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, sha
             group=Group.HOUSING,
             catalogue_mass_kg=_BODY_KG,
             purchases=(
-                Purchase(
-                    kind="encoder", designation="RLS RM08, 12 bit", remark="state output and supply when ordering"
-                ),
+                Purchase(kind="encoder", designation="RLS RM08, 12 bit", remark="output A, B, Z; supply of the driver"),
             ),
             note=f"{_GAP_MM:g} mm from the magnet, within 0.5 mm",
             joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="encoder_cap", adhesive=EPOXY),
@@ -344,6 +342,7 @@ def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, sha
             visibility=Visibility.INSIDE,
             material=MATERIALS.aluminium,
             prisms=tube(z_back_mm, z_back_mm + _CAP_MM, bore_mm, BODY_RADIUS_MM),
+            registers=(Fit(diameter_mm=2.0 * bore_mm, zone="g6"), Fit(diameter_mm=2.0 * BODY_RADIUS_MM, zone="F7")),
             note="flush with the backplate",
             joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="backplate", adhesive=EPOXY),
         ),

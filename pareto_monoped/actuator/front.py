@@ -18,6 +18,7 @@ from pareto_monoped.actuator.layout import Layout
 from pareto_monoped.actuator.planet_bearings import planet_bearing_parts
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.actuator.webs import SCREW as WEB_SCREW
+from pareto_monoped.geometry.dowels import Dowel
 from pareto_monoped.geometry.features import POINT_SHARE, bored, tap_run_out_mm, turned
 from pareto_monoped.geometry.gears import ADDENDUM, DEDENDUM, ExternalGear
 from pareto_monoped.geometry.making import FINE_MM, Fit, Length, limits, narrower, raceway_note, wider
@@ -195,7 +196,8 @@ def _planet_note(gear: ExternalGear, settings: ActuatorSettings) -> str:
         return note
     case = ""
     if settings.gear_steels.planet.treatment == "case_hardened":
-        case = f", case of {_RACEWAY_CASE * settings.parts.needles.diameter_mm:.2f} mm or more after honing"
+        least = _RACEWAY_CASE * settings.parts.needles.diameter_mm
+        case = f", case of {least:.2f} mm or more after honing, in one charge with the teeth"
     return f"{note}; bore is {_raceway(settings.planet_bore_mm, _RACEWAY_ZONE)}{case}"
 
 
@@ -267,7 +269,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                 Fit(diameter_mm=2.0 * at.r_bore, zone="h6", seat=True),
                 Fit(diameter_mm=2.0 * seat, zone="H7", seat=True),
                 Fit(diameter_mm=carrier.pin_diameter_mm, zone="H7"),
-                Fit(diameter_mm=data.interface.output_dowel_mm, zone="H7"),
+                Dowel(diameter_mm=data.interface.output_dowel_mm).hole_fit,
                 Fit(diameter_mm=ring.groove_diameter_mm, zone=ring.groove_zone),
             ),
             lengths=(
@@ -277,7 +279,7 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                 _pin_hole(at.z_shoulder, z_pins, settings),
                 *((wider("web", at.z_secondary_front, at.z_shoulder),) if web_holes else ()),
             ),
-            note=ring.groove_note,
+            note=f"{ring.groove_note}; the point of the drill of the dowels' holes may come through their floor",
             features=(
                 tapped(M3, (threads,), z_tap, 0.0, enters="high", usable_mm=carrier.thread_depth_mm),
                 bored(Circle(radius_mm=seat), z_diaphragm, 0.0, enters="high"),

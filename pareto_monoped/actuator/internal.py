@@ -35,7 +35,6 @@ from pareto_monoped.actuator.layout import (
     Layout,
     frameless,
     internal_layout,
-    register_note,
     vents,
 )
 from pareto_monoped.actuator.motor import Motor, envelope_length, motor_order
@@ -187,13 +186,14 @@ def _casing_and_ring_housing(at: Layout, shell: InternalLayout, settings: Actuat
                 tapped(M3, (mount,), z_plate, z_plate + casing.flange_mm, enters="low"),
                 bored(Circle(radius_mm=at.r_casing), z_plate, -casing.plate_mm, enters="low"),
             ),
-            fits=(Fit(diameter_mm=settings.parts.interface.mount_dowel_mm, zone="H7"), FLANGE_DOWEL.hole_fit),
+            fits=(Dowel(diameter_mm=settings.parts.interface.mount_dowel_mm).hole_fit, FLANGE_DOWEL.hole_fit),
             lengths=(
                 narrower("register", at.z_bearing_front, -casing.plate_mm),
                 Length(name="length", z0_mm=z_plate, z1_mm=-casing.plate_mm, lower_mm=0.0, upper_mm=2.0 * FINE_MM),
             ),
-            note=f"bore and faces in one clamping{register_note(at.r_seat, 'h7', 'the bore of the ring housing, H7')}"
-            f"{register_note(at.r_casing, 'H7', f'the step of the backplate over {SPIGOT_MM:g} mm')}",
+            registers=(Fit(diameter_mm=2.0 * at.r_seat, zone="h7"), Fit(diameter_mm=2.0 * at.r_casing, zone="H7")),
+            note="bore, faces and the register to the ring housing in one clamping; the bore takes the backplate's "
+            f"step, {SPIGOT_MM:g} mm",
         ),
         housing_part(
             name="ring_housing",
@@ -275,8 +275,12 @@ def _backplate(at: Layout, shell: InternalLayout, motor: Motor, settings: Actuat
             bored(Circle(radius_mm=rear_seat), z_plate, shell.z_seat, enters="high"),
             turned(at.r_casing, z_plate + SPIGOT_MM, -1.0),
         ),
-        note=f"step to fit the casing{register_note(at.r_casing, 'h7', 'the bore of the casing, H7')}; tap the motor's "
-        f"pattern before the rims of its pad are turned {_PAD_RIM_MM:g} mm beside the threads",
+        registers=(
+            Fit(diameter_mm=2.0 * at.r_casing, zone="h7"),
+            Fit(diameter_mm=2.0 * (rear_seat - casing.lip_mm), zone="H7"),
+        ),
+        note="the step is the register in the casing, the bore takes the encoder's cap; tap the motor's pattern before "
+        f"the rims of its pad are turned {_PAD_RIM_MM:g} mm beside the threads",
     )
 
 
@@ -338,6 +342,7 @@ def _motor_parts(at: Layout, shell: InternalLayout, motor: Motor, settings: Actu
             catalogue_price_eur=motor.price_share_eur(rotor_share),
             features=(clearance(M3, (screws,), shell.z_coupling, z_bell, countersunk="high"),),
             purchases=(replace(motor_order(motor, "frameless"), count=0.0),),
-            note="rotor, comes with the stator; countersink the bell's holes",
+            note="rotor, comes with the stator; countersink the bell's holes "
+            f"{2.0 * M3.countersunk:.1f} mm wide at 90 degrees, so that heads are flush",
         ),
     )

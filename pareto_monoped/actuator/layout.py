@@ -208,11 +208,6 @@ def sun_neck(at: Layout, settings: ActuatorSettings) -> SunNeck:
     )
 
 
-def register_note(radius_mm: Numbers, zone: str, mate: str) -> str:
-    """Return how a diameter that centres a part fits its mate, for its note; '' for arrays."""
-    return "" if np.ndim(radius_mm) else f"; register {2.0 * float(radius_mm):g} {zone}, to fit {mate}"
-
-
 def hub_note(settings: ActuatorSettings) -> str:
     """Return how the coupling is made to fit."""
     return f"wire-cut to the shaft's spline, {settings.parts.spline.play_mm:g} mm play"

@@ -41,7 +41,7 @@ class Dowel:
     @property
     def hole_fit(self) -> Fit:
         """Tolerance of its holes."""
-        return Fit(diameter_mm=self.diameter_mm, zone="H7")
+        return Fit(diameter_mm=self.diameter_mm, zone="H7", together=True)
 
     @property
     def alloy(self) -> Alloy:

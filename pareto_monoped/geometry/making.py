@@ -21,6 +21,7 @@ class Fit:
     zone: str  #: tolerance class after ISO 286-1, such as ``H7`` for a hole or ``h6`` for a shaft
     seat: bool = False  #: whether the face carries a bearing or a gear, so that its place and finish matter too
     raceway: bool = False  #: whether rolling elements run on the face itself, which is then hard and ground
+    together: bool = False  #: whether it is finished in place, together with the parts that it joins
 
     @property
     def text(self) -> str:
@@ -170,7 +171,7 @@ def limits(diameter_mm: float, zone: str) -> Limits:
     known = (
         [f"{letter}7" for letter in _HOLES_UM]
         + [f"{letter}6" for letter in _SHAFTS_UM]
-        + ["R6", *GROOVE_ZONES, *_TIP_ZONES]
+        + ["h7", "R6", *GROOVE_ZONES, *_TIP_ZONES]
     )
     if zone not in known:
         raise DesignError(f"tolerance class = {zone!r}: must be one of {', '.join(known)}; choose one of these")

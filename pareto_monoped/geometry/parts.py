@@ -237,6 +237,8 @@ class Part:
     #: Alloy or steel grade with its condition, where the maker must keep to one
     grade: Alloy | GearGrade | None = field(default=None, compare=False)
     fits: tuple[Fit, ...] = field(default=(), compare=False)  #: tolerances of its round faces
+    #: Tolerances of faces that centre it or a neighbour and are turned with those beside them, at no price of their own
+    registers: tuple[Fit, ...] = field(default=(), compare=False)
     lengths: tuple[Length, ...] = field(default=(), compare=False)  #: tolerances of lengths that others depend on
     #: Of its teeth, after ISO 1328-1; None without teeth, or where only the outline matters
     accuracy_class: int | None = field(default=None, compare=False)
@@ -246,6 +248,11 @@ class Part:
     joint: Joint | None = None  #: what holds it where its shape does not
     visibility: Visibility = Visibility.OUTSIDE  #: where it is drawn
     features: tuple[Feature, ...] = ()  #: its holes, chamfers and countersunk heads, whose cones are geometry too
+
+    @property
+    def toleranced(self) -> tuple[Fit, ...]:
+        """All tolerances of round faces."""
+        return (*self.fits, *self.registers)
 
     @property
     def bevels(self) -> tuple[Bevel, ...]:

@@ -161,12 +161,13 @@ def _fastened(
                     kind="pin",
                     designation=f"bearing pin of roller chain ISO 606 - {d.chain.name}, {d.chain.pin_diameter_mm:g} mm",
                     standard="ISO 606",
-                    remark="riveted into the fork",
+                    remark="from spare links of the same chain; riveted into the fork",
                 ),
             ),
-            note=f"fork with {hand} stud {thread.text}, {TRAVEL + _NUT + _SPARE + _STUD_DEPTH:g} mm long without "
-            f"undercut, run-out before the fork {_RUN_OUT:g} mm at most: keep the nut clear of it at the short end of "
-            "the travel; drawn as a square of its area; the pin, drawn as a boss, is no part of it: it is the chain's "
+            note=f"fork, its slot {d.chain.inner_link_mm + 2.0 * _SLOT_PLAY:g} +0.1 / 0, with {hand} stud "
+            f"{thread.text}, {TRAVEL + _NUT + _SPARE + _STUD_DEPTH:g} mm long without undercut, run-out "
+            f"before the fork {_RUN_OUT:g} mm at most: keep the nut clear of it at the short end of the travel; drawn "
+            "as a square of its area; the pin, drawn as a boss, is no part of it: it is the chain's "
             f"own, through holes {pin.text} that are reamed in line through both cheeks, and through the chain's inner "
             "link, and is riveted",
         ),

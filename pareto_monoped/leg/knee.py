@@ -34,6 +34,7 @@ _BOLTS, _BOLT_PITCH_RADIUS = 4, 5.5  # M4: 2.35 mm of metal between their holes 
 AXLE_DOWEL = Dowel(diameter_mm=4.0)  # as many as bolts, in the gaps between them: 0.7 mm of metal between the holes
 _DOWEL_PITCH_RADIUS = 6.8  # 1.2 mm of metal to the bearing's seat
 DOWEL_DEPTH = 7.0  # in the axle: with the plate, 10 mm long ones fit
+_TO_GRIND = 0.5  # of each spacer: shoulders, rings and ends may make up 0.74 mm of both by their general tolerances
 # The nut of an axle bolt, M4 (ISO 4032), mm. The bolts are 7.8 mm apart, so that washers of 8 mm have no room.
 # Heads and nuts press the plates less than ``strength.threads`` allows.
 _NUT_HEIGHT = 3.2
@@ -127,8 +128,8 @@ def _axle(d: LegDimensions) -> Part:
         fits=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="h6", seat=True), AXLE_DOWEL.hole_fit),
         lengths=(narrower("shoulders", -shoulder, shoulder),),
         features=(turned(d.bearing_bore_radius_mm, half_gap, -1.0), turned(d.bearing_bore_radius_mm, -half_gap, 1.0)),
-        note="ream the holes of the dowels before the others are drilled beside them; axle and sprocket in one piece; "
-        f"{d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
+        note="axle and sprocket in one piece, both seats turned on one axis within 0.02 mm and the roots of the teeth "
+        f"within 0.1 mm of it; {d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
     )
 
 
@@ -158,8 +159,9 @@ def _spacer(d: LegDimensions) -> Part:
         role=Role.SPACER,
         prisms=(disc(SHOULDER_RADIUS, 0.0, half_gap - half_thigh_gap, Circle(radius_mm=d.bearing_bore_radius_mm)),),
         places_mm=((0.0, 0.0, half_thigh_gap), (0.0, 0.0, -half_gap)),
-        note="clamps the bearing's inner ring; both ground until spacers and bearings together stand 0.02 to 0.05 mm "
-        "out over the axle's ends",
+        registers=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="F7"),),
+        note=f"clamps the bearing's inner ring; made {_TO_GRIND:g} mm longer than drawn, then both ground until "
+        "spacers and bearings together stand 0.02 to 0.05 mm out over the axle's ends",
     )
 
 

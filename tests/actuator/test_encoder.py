@@ -52,4 +52,4 @@ def _is_in_the_shaft(actuator):
 
 def test_the_order_of_the_sensor_asks_for_what_its_name_leaves_open():
     (sensor,) = (part for part in next(iter(of_each_family("VT8020"))).parts if part.name == "encoder")
-    assert sensor.described.startswith("RLS RM08, 12 bit, state output and supply when ordering; ")
+    assert sensor.described.startswith("RLS RM08, 12 bit, output A, B, Z; supply of the driver; ")

@@ -88,7 +88,7 @@ def test_threads_and_pins_of_the_turnbuckles_are_said_in_full(leg):
     assert "tapped M5x0.8 - 6H at one end and M5x0.8 LH - 6H at the other" in notes["turnbuckle_bar"]
     assert "14.5 mm deep at least with a bottoming tap, drill 4.2 mm, 16 mm deep" in notes["turnbuckle_bar"]
     for end in ("hip", "knee"):
-        assert "the pin is no part of it: it is the chain's own" in notes[f"turnbuckle_end_{end}"]
+        assert "the pin, drawn as a boss, is no part of it: it is the chain's own" in notes[f"turnbuckle_end_{end}"]
         assert f"holes {leg.chain.pin_diameter_mm:g} H7 that are reamed" in notes[f"turnbuckle_end_{end}"]
         heights = [
             y

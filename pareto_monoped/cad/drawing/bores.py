@@ -144,7 +144,7 @@ def _bore(part: Part, shape: Circle | Pattern, low: float, high: float) -> Bore:
     feature = _feature(part, shape, low, high)
     # A tapping drill may have the diameter of a fitted hole.
     threaded = feature is not None and feature.thread is not None
-    fits = () if threaded else (fit for fit in part.fits if fit.holds(2.0 * float(shape.radius_mm)))
+    fits = () if threaded else (fit for fit in part.toleranced if fit.holds(2.0 * float(shape.radius_mm)))
     through, fit = _through(part, shape, low, high), next(iter(fits), None)
     return Bore(shape=shape, low=low, high=high, through=through, feature=feature, fit=fit)
 

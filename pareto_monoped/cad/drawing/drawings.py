@@ -150,7 +150,7 @@ def part_drawing(unique: ListedPart, origin: Origin, number: int) -> bytes:
         finish=finish,
         **asdict(origin),
     )
-    return _file([_drawn(part, (part.fits, part.lengths, part.teeth, part.accuracy_class, part.note))], title)
+    return _file([_drawn(part, (part.toleranced, part.lengths, part.teeth, part.accuracy_class, part.note))], title)
 
 
 def assembly_drawing(product: Product, origin: Origin) -> bytes:

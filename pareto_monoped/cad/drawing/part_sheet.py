@@ -1,9 +1,9 @@
 """The drawing of one part: which views and tables it needs, at which scale and on which sheet."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 
-from pareto_monoped.cad.drawing.bores import bores, chamfer_text, number
+from pareto_monoped.cad.drawing.bores import Bore, bores, chamfer_text, number
 from pareto_monoped.cad.drawing.data_tables import fit_table, gear_rows, length_rows
 from pareto_monoped.cad.drawing.dimension import DATUM, datum_fit
 from pareto_monoped.cad.drawing.end_view import end_view, sees_more_from_above
@@ -26,7 +26,7 @@ Sheet = tuple[Paper, Size, float]  #: What stands on it, its size, its scale.
 def round_part(part: Part) -> RoundPart:
     """Return what the views are drawn from."""
     body, teeth, holes = half_section(part), teeth_of(part), bores(part)
-    found = RoundPart(body=body, teeth=teeth, bores=holes, fits=part.fits, from_above=True)
+    found = RoundPart(body=body, teeth=teeth, bores=holes, fits=part.toleranced, from_above=True)
     return replace(found, from_above=sees_more_from_above(found))
 
 
@@ -52,7 +52,7 @@ def round_tables(part: Part, drawn: RoundPart) -> list[Paper]:
         )
         tables.append(table(_gear_title(teeth, drawn), ("", ""), rows))
     around = [2.0 * c.radius for c in cylinders(drawn.body)]
-    fits = fit_table(part.fits, [any(fit.holds(diameter) for diameter in around) for fit in part.fits])
+    fits = fit_table(drawn.fits, [any(fit.holds(diameter) for diameter in around) for fit in drawn.fits])
     return [*tables, *([fits] if fits is not None else []), *length_tables(part, drawn.datum)]
 
 
@@ -96,10 +96,18 @@ def axis_threads(part: Part, datum_mm: float) -> Iterator[str]:
         yield f"Tapped on the axis from the {where}: {bore.size()}."
 
 
+def _fit_notes(part: Part, holes: Iterable[Bore]) -> Iterator[str]:
+    """Yield how holes are finished in place, and the tolerance of all other diameters."""
+    for fit in dict.fromkeys(hole.fit for hole in holes if hole.fit is not None and hole.fit.together):
+        yield f"Ø{fit.text} is reamed together with the parts that the dowels join, from holes 0.2 mm smaller."
+    if part.process in ("machined", "laser cut"):
+        yield "Diameters without tolerance: holes H12, shafts h12 (ISO 286-2)."
+
+
 def part_sheet(part: Part) -> Sheet:
     """Return the sheet of a part without its title block; ``ValueError`` if no sheet is large enough."""
     said = [part.note, part.joint.text if part.joint else ""]
-    notes = [f"{note[0].upper()}{note[1:]}." for note in said if note]
+    notes = [*_fit_notes(part, bores(part)), *(f"{note[0].upper()}{note[1:]}." for note in said if note)]
     if is_round(part):
         drawn = round_part(part)
         low, _, high, top = drawn.body.bounds

@@ -51,7 +51,6 @@ _WIDE_MM = 120.0  # width of a detail
 _APART_MM = 8.0  # from a view to its detail
 _ROWS = 34  # rows of a table before it goes on beside itself
 
-
 Circle = tuple[float, float, float]  #: x and y of its centre, and its radius
 
 
@@ -88,8 +87,7 @@ def section_place(plan: Plan) -> float:
     if plan.bores:
         return max(plan.bores, key=lambda bore: bore.radius).centres[0][0]
     bosses = [layer.outline.circle for layer in plan.layers if layer.outline.circle is not None]
-    wide = max(bosses, key=lambda circle: float(circle.radius_mm), default=None)
-    return 0.5 * (x0 + x1) if wide is None else float(wide.x_mm)
+    return max(((c.radius_mm, float(c.x_mm)) for c in bosses), default=(0.0, 0.5 * (x0 + x1)))[1]
 
 
 def section_marks(paper: Paper, plan: Plan, scale: float) -> None:
@@ -276,12 +274,12 @@ def _has_section(plan: Plan) -> bool:
 def plan_tables(plan: Plan, part: Part) -> tuple[list[Paper], list[Tag]]:
     """Return tables of fits, holes, windows and contours, and the names that stand on the view."""
     around = [2.0 * radius for radius in _around(plan)]
-    alone = [any(fit.holds(diameter) for diameter in around) for fit in part.fits]
-    first = datum_fit(part.fits)
-    axis = first is not None and alone[part.fits.index(first)]
+    alone = [any(fit.holds(diameter) for diameter in around) for fit in part.toleranced]
+    first = datum_fit(part.toleranced)
+    axis = first is not None and alone[part.toleranced.index(first)]
     hole_rows, tags = _hole_rows(plan, first if axis else None)
     contour_rows, window_rows, node_tags = _contour_rows(plan, part)
-    fits = fit_table(part.fits, alone)
+    fits = fit_table(part.toleranced, alone)
     tables = [] if fits is None else [fits]
     if hole_rows or window_rows:
         rows = [*hole_rows, *window_rows]
@@ -389,7 +387,7 @@ def _contour_rows(plan: Plan, part: Part) -> tuple[list[tuple[str, ...]], list[t
         span = f"z {number(layer.low - plan.low)} to {number(layer.high - plan.low)}" if several else ""
         for contour in (layer.outline, *layer.holes):
             ends = ", ".join(filter(None, (span, *_end_chamfers(contour, layer, plan, part))))
-            _add_contour(contour, layer, ends, part.fits, rows, shapes, tags)
+            _add_contour(contour, layer, ends, part.toleranced, rows, shapes, tags)
     return rows, shapes, tags
 
 

@@ -114,7 +114,7 @@ def _note(part: Part) -> str:
         f"{grade.name}, {grade.hardness}" if grade else "",
         f"ISO 1328-1 class {accuracy}" if accuracy else "",
         *(one.text for one in part.teeth),
-        *(fit.text for fit in part.fits),
+        *(fit.text for fit in part.toleranced),
         part.described,
         part.joint.text if part.joint else "",
     )
@@ -224,7 +224,8 @@ def hardware(product: Listed) -> str:
         lengths = ", ".join(f"{c.name} {c.wires} x {c.cut_mm:g} mm" for c in made)
         total_m = 1e-3 * sum(c.wires * c.cut_mm for c in made)
         count, names = sum(c.wires for c in made), " ".join(c.name for c in made)
-        rows.append(("cable", designation, "", "", count, "piece", "", names, f"{lengths}; {total_m:.2f} m"))
+        remarks = "; ".join((f"{lengths}; {total_m:.2f} m", *(c.warning for c in made if c.warning)))
+        rows.append(("cable", designation, "", "", count, "piece", "", names, remarks))
     ties = sum(cable.notes.count(TIE) for made in by_designation(product).values() for cable in made)
     rows.append(("cable", TIE_DESIGNATION, "", "", ties, "piece", "", "driver plates", ""))
     return csv_text(_COLUMNS, rows)

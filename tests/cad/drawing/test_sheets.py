@@ -150,7 +150,7 @@ def test_positions_refer_to_the_axis_that_the_fits_name(sheets):
     with_datum = 0
     for part, paper, _, _ in sheets:
         said = [label.text for label in paper.labels]
-        if is_round(part) or "A" not in said or not part.fits or "shoulders" not in said:
+        if is_round(part) or "A" not in said or not part.toleranced or "shoulders" not in said:
             continue
         with_datum += 1
         positions = [text for text in said if text in ("Ø0.02", "Ø0.1") or text.startswith(("Ø0.02 ", "Ø0.1 "))]
@@ -246,7 +246,7 @@ def test_every_diameter_of_a_round_part_stands_once_beside_its_section(sheets):
         if not is_round(part):
             continue
         upright = Counter(label.text for label in paper.labels if label.upward and label.text.startswith("Ø"))
-        wanted = {diameter_text(round(c.radius, 6), part.fits) for c in cylinders(half_section(part))}
+        wanted = {diameter_text(round(c.radius, 6), part.toleranced) for c in cylinders(half_section(part))}
         assert upright == Counter(wanted), part.name
 
 
@@ -316,9 +316,9 @@ def test_gears_have_their_data_and_fits_their_limits(sheets):
             gears += 1
             assert f"{int(teeth.gear.teeth)}" in said
             assert any(text.startswith(("Base tangent length W over", "Between pins")) for text in said)
-        for fit in part.fits:
+        for fit in part.toleranced:
             assert f"Ø{fit.text}" in said, part.name
-        if part.fits:
+        if part.toleranced:
             assert "Fits (ISO 286-2)" in said
     assert gears >= 5
 
