@@ -27,6 +27,13 @@ def test_every_lower_end_belongs_to_its_own_interval(vt_map, tenths):
         assert vt_map.interval_index([ratio]).tolist() == [tenths - 40]
 
 
+def test_every_interval_with_a_gearbox_gives_it_the_first_and_the_last_as_well(vt_map):
+    for k, entry in enumerate(vt_map.entries):
+        if entry.actuator is not None:
+            assert vt_map.lookup(4.05 + 0.1 * k) is entry.actuator
+    assert vt_map.entries[0].actuator is not None
+
+
 @pytest.mark.parametrize("tenths", range(41, 88))
 def test_the_interval_below_ends_5e_10_before_its_upper_end(vt_map, tenths):
     """The documented rounding at an interval's edges: closer than that, a ratio counts to the next interval."""

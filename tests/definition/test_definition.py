@@ -6,7 +6,7 @@ import pytest
 
 from pareto_monoped.definition.algorithms import ALGORITHMS
 from pareto_monoped.definition.study import Study, load_study, study_from_dict
-from pareto_monoped.definition.variables import Bounds
+from pareto_monoped.definition.variables import Bounds, number_of
 from pareto_monoped.design import DEFAULTS, LENGTHS, LOWER, PAPER_NAMES, UPPER
 from pareto_monoped.errors import InputError, StudyError
 from pareto_monoped.jump import calibration_defaults
@@ -222,3 +222,11 @@ def test_the_same_limit_with_a_dot_and_as_a_table_is_refused():
             evaluations=10,
             constraints={"height_m.p05": {"min": 0.6}, "height_m": {"p05": {"min": 0.7}}},
         )
+
+
+@pytest.mark.parametrize("name", ["stiffness_n_per_m", "damping_n_s_per_m"])
+def test_gains_of_the_controller_may_be_any_number_from_0_to_a_million(name):
+    assert [number_of("fixed", name, given) for given in (0, 9.5e5, 1e6)] == [0.0, 9.5e5, 1e6]
+    for given in (-1e-9, 1.0001e6):
+        with pytest.raises(StudyError, match="a number from 0 to 1e\\+06"):
+            number_of("fixed", name, given)

@@ -229,3 +229,10 @@ def test_the_bus_sums_both_motors_before_it_cuts_off():
         assert found == pytest.approx(1e-3 * np.maximum(power, 0.0).sum(), rel=1e-9)
         apart = replace(calibration, drive=replace(calibration.drive, battery="each_motor"))
         assert Evaluator(MAP, apart)(design).electrical_energy_j[0] > 1.005 * found
+
+
+def test_the_documents_springs_are_at_rest_over_the_whole_play_and_no_more():
+    drive = replace(ELASTIC.drive, backlash_rad=0.004)
+    model = mujoco.MjModel.from_xml_string(mjcf(robot_arrays(CASES[:1], MAP), replace(ELASTIC, drive=drive)))
+    springs = [model.tendon(f"{joint}_drive").id for joint in ("hip", "knee")]
+    assert model.tendon_lengthspring[springs].tolist() == [[-0.002, 0.002]] * 2

@@ -11,6 +11,7 @@ from pareto_monoped.design import NAMES, PAPER_CASES, complete, control_of
 from pareto_monoped.jump.balance import energy_balance
 from pareto_monoped.jump.calibration import load_calibration, on_stand
 from pareto_monoped.jump.controller import LANDED
+from pareto_monoped.jump.end_stops import end_stops
 from pareto_monoped.jump.engines import population_of
 from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.jump.landing import LANDING, Hops, Landing, best_landed, course, hops, landed, landing_records
@@ -204,6 +205,25 @@ def test_windings_that_bear_less_make_hops_rarer():
     np.testing.assert_allclose((made_j / (allowed_w * period_s)).max(), 1.0, rtol=1e-6)
     cold = replace(one, continuous_torque_n_m=0.01 * one.continuous_torque_n_m)
     assert hops(cold, control_of(CASES[[3]]), ELASTIC, 1).hops_per_minute == 0.0
+
+
+def test_a_spring_without_damper_takes_up_the_fall_of_the_foot_within_its_stroke():
+    """Its energy is that of the fall from where the jump ends to where the foot meets the ground, leg stretched."""
+    control = control_of(CASES)
+    population = population_of(ROBOTS, control, start_pose(ROBOTS, ELASTIC), ELASTIC)
+    population.run()
+    ended = population.records.copy()
+    undamped = replace(LANDING, damping_ratio=1e-9)
+    records = landing_records(ROBOTS, control, ELASTIC, undamped, ended)
+    fall = ended["position"][:, 1] - records["catch_m"] - ROBOTS.foot_radius_m
+    assert fall.min() > 0.1
+    bent = end_stops(ROBOTS, ELASTIC.joints)[1].upper_rad
+    thigh, shank = ROBOTS.thigh_length_m, ROBOTS.shank_length_m
+    folded = np.sqrt(thigh**2 + shank**2 + 2.0 * thigh * shank * np.cos(bent))
+    stroke = LANDING.stroke * (records["catch_m"] - np.maximum(folded, 0.15 - ROBOTS.foot_radius_m))
+    moved = ROBOTS.body_mass_kg.sum(axis=1)
+    stored = 0.5 * records["force_n_per_m"][:, 1] * stroke**2
+    np.testing.assert_allclose(stored, moved * 9.81 * fall, rtol=1e-3)
 
 
 def test_the_leg_is_lowered_smoothly():

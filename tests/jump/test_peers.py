@@ -163,3 +163,12 @@ def test_a_worker_of_one_process_uses_all_cores_and_two_share_them():
 def test_no_processes_are_refused(count):
     with pytest.raises(InputError, match="processes = "), peers.processes(count):
         pass
+
+
+def test_a_cluster_compares_what_the_extra_needs_as_well(monkeypatch):
+    """Workers with another CAD kernel made exports: nobody had passed the extra on."""
+    asked = {}
+    monkeypatch.setattr(peers, "DaskWorkers", str)
+    monkeypatch.setattr(peers, "crew_of", lambda workers, **given: asked.update(given))
+    peers.cluster("tcp://127.0.0.1:8786", extra="cad", seat=3)
+    assert (asked["extra"], asked["seat"]) == ("cad", 3)
