@@ -15,7 +15,7 @@ import pareto_monoped as pm
 from pareto_monoped.cad import film as films
 from pareto_monoped.errors import ParetoMonopedError
 from tests.records import compare, of_text
-from tests.signed_studies import put_studies
+from tests.signed_studies import go_to_studies
 
 FOLDER = Path(__file__).parent / "signatures"
 A, C = (pm.PAPER_CASES[name].design for name in "AC")
@@ -23,10 +23,9 @@ MOTORS = {"hip_motor": "U8", "knee_motor": "VT8020"}
 
 
 @pytest.fixture
-def here(tmp_path, made_once, monkeypatch, few_samples):
-    """A folder with the studies."""
-    put_studies(made_once, tmp_path)
-    monkeypatch.chdir(tmp_path)
+def here(tmp_path, made_once, monkeypatch):
+    """A folder with the studies, to which commands and paths refer."""
+    go_to_studies(made_once, tmp_path, monkeypatch)
     return tmp_path
 
 
