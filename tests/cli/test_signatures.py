@@ -91,7 +91,7 @@ OPTIONS = {
         "simulate --case nominal --hip-motor U8 --knee-motor VT8020 --rules paper --json",
         "simulate --case A --hip-motor VT8020 --knee-motor MN8014 --landing --json",
         "simulate --controller torque_over_time:3 --set knee_knot_1=-0.8 --set knee_knot_2=-0.5 --json",
-        "simulate --case A --set knee_release_rad=0.3 --set torsional_stiffness_n_m_per_rad=60 --trace notes.csv",
+        "simulate --case A --set knee_release_rad=0.3 --set torsional_stiffness_n_m_per_rad=60 --trace trace.csv",
         "simulate --case A --set knee_ratio=4 --set hip_ratio=8.6 --trace notes.csv --model model.xml --force",
         "simulate --set stiffness_n_per_m=0 --set damping_n_s_per_m=0",
         "simulate --set thigh_length_m=0.3 --set shank_length_m=0.3 --set start_height_m=0.6",
