@@ -1,10 +1,12 @@
 """Small studies that tests of signatures read, made once per test run, and the files that their commands need."""
 
 import shutil
+from dataclasses import fields
 from pathlib import Path
 
 from pareto_monoped.campaign.grid import load_campaign
 from pareto_monoped.definition.study import load_study
+from pareto_monoped.storage.extra_rows import Limit, Perturbed, Reached
 from pareto_monoped.study.run import run
 
 SIGNED = """
@@ -85,3 +87,21 @@ def _made(folder):
     for one in load_campaign(folder / "grid.toml").members:
         run(one.study, folder / "studies" / f"{one.name}.db", workers=1)
     return folder
+
+
+def numbered_limit():
+    """A limit of a design whose numbers all differ, and what makes other records of numbers that differ from them."""
+    numbers = iter(0.0137 * k for k in range(1, 100))
+
+    def numbered(kind, *names, **known):
+        return kind(**{name: next(numbers) for name in names or [f.name for f in fields(kind)]}, **known)
+
+    def reached():
+        known = {"design": {}, "controller": {}, "perturbed": numbered(Perturbed)}
+        return numbered(Reached, "height_m", "energy_j", "half_step_height_m", "half_step_energy", **known)
+
+    jumps = {name: reached() for name in ("least", "greatest", "least_held", "greatest_held", "over_time", "tracking")}
+    known = {"trial": 5, "energy": "energy_j", "jumps": 60, "perturbed": numbered(Perturbed)}
+    gaps = ("height_m", "energy_j", "floor_j", "controller_gap", "controller_gap_held")
+    found = numbered(Limit, *gaps, **jumps, **known)
+    return found, numbered

@@ -15,7 +15,7 @@ import pareto_monoped as pm
 from pareto_monoped.cad import film as films
 from pareto_monoped.errors import ParetoMonopedError
 from tests.records import compare, of_text
-from tests.signed_studies import go_to_studies
+from tests.signed_studies import go_to_studies, numbered_limit
 
 FOLDER = Path(__file__).parent / "signatures"
 A, C = (pm.PAPER_CASES[name].design for name in "AC")
@@ -170,6 +170,12 @@ def test_what_built_robots_do_is_as_it_was(here):
         "none jumped": lambda: pm.robust("other.db", 900),
     }
     compare(signed(calls), FOLDER / "as_built.json")
+
+
+def test_a_limit_has_each_number_in_its_column(monkeypatch, here):
+    """Few jumps find one that is both the highest and of the least energy."""
+    monkeypatch.setattr("pareto_monoped.analysis.limit.limits", lambda *_, **__: [numbered_limit()[0]])
+    compare(signed({"limit": lambda: pm.limit("signed.db", 80)}), FOLDER / "limit.json")
 
 
 def test_runs_return_what_they_did(here):

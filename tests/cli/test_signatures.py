@@ -24,14 +24,13 @@ from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.page import build, payload_of
 from pareto_monoped.report.resimulation import resimulate
-from pareto_monoped.storage.extra_rows import Limit, Perturbed, Reached
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.uncertainty.statistics import Robustness, Spread
 from tests.campaign.support import content_of, made_campaign
 from tests.cli.support import ROOT, run
 from tests.records import compare, of_text, signature
 from tests.report.test_campaign_page import AXES, fronts
-from tests.signed_studies import SIGNED, go_to_studies
+from tests.signed_studies import SIGNED, go_to_studies, numbered_limit
 
 FOLDER = Path(__file__).parent
 LEGS = ROOT / "examples" / "legs"
@@ -385,19 +384,7 @@ def test_the_page_and_the_table_of_a_campaign_say_what_they_did(tmp_path):
 
 def test_what_is_found_of_designs_is_printed_in_its_place(capsys):
     """Of numbers that all differ: shares of few robots are often all or none, and could be exchanged."""
-    numbers = iter(0.0137 * k for k in range(1, 100))
-
-    def numbered(kind, *names, **known):
-        return kind(**{name: next(numbers) for name in names or [f.name for f in fields(kind)]}, **known)
-
-    def reached():
-        known = {"design": {}, "controller": {}, "perturbed": numbered(Perturbed)}
-        return numbered(Reached, "height_m", "energy_j", "half_step_height_m", "half_step_energy", **known)
-
-    jumps = {name: reached() for name in ("least", "greatest", "least_held", "greatest_held", "over_time", "tracking")}
-    known = {"trial": 5, "energy": "energy_j", "jumps": 60, "perturbed": numbered(Perturbed)}
-    gaps = ("height_m", "energy_j", "floor_j", "controller_gap", "controller_gap_held")
-    found = numbered(Limit, *gaps, **jumps, **known)
+    found, numbered = numbered_limit()
     limit._print([found, replace(found, least_held=None, greatest_held=None, controller_gap_held=None, tracking=None)])
     spreads = {name: numbered(Spread) for name in HEIGHT_AND_ENERGY.names}
     built = numbered(Robustness, "failed", "overloaded", samples=64, measures=spreads)
