@@ -164,7 +164,6 @@ def test_what_built_robots_do_is_as_it_was(here):
         "of the front": lambda: pm.robust("signed.db", uncertainty="mine.toml", samples=32, **one).iloc[:3],
         "robust pick": lambda: pm.load_study("signed.db").pick("knee", robust=True),
         "sensitivity": lambda: pm.sensitivity("other.db", 15, samples=32, within=0.05, seed=3, **one),
-        "limit": lambda: pm.limit("signed.db", designs=2, jumps=20, seed=2, **one),
         "limit of a trial": lambda: pm.limit("signed.db", 80, jumps=20, **one),
         "no samples": lambda: pm.robust("other.db", 4, samples=33),
         "none jumped": lambda: pm.robust("other.db", 900),
