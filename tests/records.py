@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import zlib
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
@@ -9,7 +10,14 @@ from enum import Enum
 
 import numpy as np
 
+from pareto_monoped import __version__
 from tests.cad.signed import GOLDEN
+
+_NUMBER = re.compile(r"(?<![\w.])-?\d+\.?\d*(?:[eE][+-]?\d+)?")
+_NEVER_THE_SAME = re.compile(
+    rf"{re.escape(__version__)}|(?<![.\w])[0-9a-f]{{16,64}}\b|\S*/pytest-\S*|\b\d\d\d\d-\d\d-\d\d\S*|\b\d\d:\d\d\S*"
+    r"|[\d.,]+ (?:s|ms|h|MB|kB|bytes|per second)\b|[\d.]+(?: designs)?/s|\"\w*(?:second|wall_time)\w*\": [\d.]+"
+)
 
 
 def signature(*records):
@@ -51,6 +59,13 @@ def _walk(record, numbers, words):
                     _walk(getattr(record, field.name), numbers, words)
         case _:
             words.append(type(record).__name__)
+
+
+def of_text(text, digits=6):
+    """The signature of a text: its words, and some digits of its numbers, for the last ones are the machine's."""
+    text = _NEVER_THE_SAME.sub("", text)
+    numbers = [float(f"{float(one):.{digits}g}") if abs(float(one)) > 1e-9 else 0.0 for one in _NUMBER.findall(text)]
+    return signature(numbers, _NUMBER.sub("#", text))
 
 
 def compare(found, path):

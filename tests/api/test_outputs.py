@@ -9,6 +9,7 @@ import pareto_monoped as pm
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.errors import CheckError, InputError, OutputError, SelectionError
 
+STILL = [np.zeros((480, 720, 3), np.uint8)]
 C = pm.PAPER_CASES["C"].design
 
 
@@ -86,3 +87,14 @@ def test_a_report_is_written_and_not_over_something_else(stored, tmp_path):
     with pytest.raises(OutputError):
         pm.write_report(stored.path, tmp_path / "notes.html")
     assert (tmp_path / "notes.html").read_text() == "mine"
+
+
+def test_a_film_has_the_motors_of_either_joint(tmp_path, monkeypatch):
+    asked = []
+    monkeypatch.setattr("pareto_monoped.cad.film.film", lambda robot, steps, **_: asked.append((robot, steps)) or STILL)
+    pm.film(C, tmp_path / "c.gif", hip_motor="U8", knee_motor="VT8020")
+    ((robot, steps),) = asked
+    assert (robot.hip.motor.name, robot.knee.motor.name) == ("U8", "VT8020")
+    traced, exchanged = (pm.trace(C, **{f"{joint}_motor": "U8"}) for joint in ("hip", "knee"))
+    np.testing.assert_array_equal(steps["base_z_m"], traced["base_z_m"])
+    assert traced["base_z_m"].max() != exchanged["base_z_m"].max()

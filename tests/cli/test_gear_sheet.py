@@ -4,11 +4,14 @@ import itertools
 import json
 import math
 import re
+from dataclasses import replace
 
 import pytest
 
 from pareto_monoped import cli
 from pareto_monoped.actuator.search import map_for
+from pareto_monoped.cli.actuator_sheets import print_gear_sheet
+from pareto_monoped.cli.terminal import new_console
 from pareto_monoped.geometry.gears import ExternalGear, InternalGear
 from pareto_monoped.geometry.roles import Group, Role
 from tests.actuator.rating.iso6336 import springs
@@ -245,3 +248,41 @@ def test_torques_say_what_they_are_and_for_how_long(capsys, motor, words):
     assert f"{1e6 * rotor['axial_inertia_kg_m2']:.2f} kg mm2, of the motor alone" in text
     (line,) = (line for line in text.splitlines() if line.startswith(" motor_rotor "))
     assert line.split()[-1] == f"{1e6 * rotor['axial_inertia_kg_m2']:.2f}"
+
+
+LOADS = (
+    "tangential_force_n", "pitch_speed_m_per_s", "pinion_diameter_mm", "gear_ratio", "contact_ratio",
+    "mesh_stiffness_n_per_mm_um", "misalignment_um", "pitch_deviation_um", "application_factor", "sharing_factor",
+    "dynamic_factor", "face_load_factor", "root_face_load_factor", "transverse_load_factor",
+    "root_transverse_load_factor", "overload_face_load_factor", "overload_root_face_load_factor",
+    "overload_transverse_load_factor", "overload_root_transverse_load_factor", "zone_factor", "elasticity_factor",
+    "contact_ratio_factor",
+)  # fmt: skip
+STRESSES = (
+    "tip_diameter_mm", "form_diameter_mm", "root_diameter_mm", "tip_thickness_mm", "single_contact_factor",
+    "flank_cycles", "flank_life_factor", "contact_number_mpa", "finish_factor", "work_hardening_factor",
+    "contact_stress_mpa", "contact_limit_mpa", "flank_safety", "static_flank_life_factor", "overload_flank_safety",
+    "form_factor", "stress_correction", "rim_factor", "root_cycles", "root_life_factor", "bending_number_mpa",
+    "notch_sensitivity_factor", "roughness_factor", "mean_stress_factor", "bending_stress_mpa", "bending_limit_mpa",
+    "root_safety", "static_root_life_factor", "static_notch_factor", "overload_root_safety",
+)  # fmt: skip
+"""What the rows of the sheet show, from above."""
+
+
+def test_every_cell_of_the_sheet_is_the_quantity_of_its_row_and_gear():
+    """Of numbers that differ in two digits everywhere: those of real gears do not, such as the cycles of two roots."""
+    settings, rating = map_for("VT8020").settings, map_for("VT8020").lookup(6.0).rating
+
+    def numbered(record, names, place):
+        return replace(record, **{name: 10.0**place * (11 + k) for k, name in enumerate(names)})
+
+    sun, on_sun, on_ring, ring = (numbered(gear, STRESSES, k) for k, gear in enumerate(rating.gears))
+    sun_mesh = numbered(replace(rating.sun_mesh, pinion=sun, wheel=on_sun), LOADS, 0)
+    ring_mesh = numbered(replace(rating.ring_mesh, pinion=on_ring, wheel=ring), LOADS, 1)
+    console = new_console(width=80)
+    with console.capture() as sheet:
+        print_gear_sheet(console, replace(rating, sun_mesh=sun_mesh, ring_mesh=ring_mesh), settings)
+    loads, stresses = sheet.get().split("stress and safety")
+    for text, names, count in ((loads, LOADS, 2), (stresses, STRESSES, 4)):
+        cells = [list(map(float, row)) for row in rows(text, count).values()]
+        assert cells == [[10.0**place * (11 + k) for place in range(count)] for k in range(len(names))]

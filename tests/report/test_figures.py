@@ -238,3 +238,16 @@ def test_the_same_map_gives_the_same_bytes(tmp_path):
     for name in ("a.svg", "b.svg"):
         write_map_figure({"": map_for("VT8020")}, tmp_path / name)
     assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+
+
+@pytest.mark.parametrize("objectives", [("drift_m", "energy_j"), ("energy_j", "drift_m")])
+def test_the_papers_designs_stand_in_the_units_that_axes_show(payload, objectives):
+    """A drift is shown in millimetres; with either scale in place of the other, they would lie far from the front."""
+    (card,), figure = payload.studies, mpl.Figure()
+    trials = replace(card.trials, columns={**card.trials.columns, "drift_m": card.trials.columns["energy_j"]})
+    front_figure(replace(payload, objectives=objectives, studies=[replace(card, trials=trials)]), figure)
+    (axes,) = figure.axes
+    lines = {line.get_label(): np.column_stack(line.get_data()) for line in axes.lines}
+    expected = [(case.energy_j, 1000.0 * case.measures["drift_m"]) for case in card.cases]
+    expected = expected if objectives[0] == "drift_m" else [pair[::-1] for pair in expected]
+    np.testing.assert_allclose(lines["paper, simulated here"], expected)

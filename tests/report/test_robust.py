@@ -13,7 +13,7 @@ from pareto_monoped.analysis.sensitivity import sensitivity
 from pareto_monoped.measures import ROBUST_NAMES
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.page import build, embedded, page
-from pareto_monoped.report.robust import best_of
+from pareto_monoped.report.robust import best_of, robust_of
 from pareto_monoped.storage.extra_rows import read_limits, read_robustness, read_sensitivity
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.uncertainty.settings import load_uncertainty
@@ -205,3 +205,14 @@ def test_the_page_tells_numerical_and_physical_tests_apart(shown, stored, search
     tab.page.locator("[data-show=best]").click()
     assert tab.page.evaluate(f"{found} === undefined")
     tab.quiet(file)
+
+
+def test_the_page_tells_designs_that_fail_often_from_those_with_other_settings(uncertain, stored):
+    first, second, third, fourth = sorted(stored)
+    often = {
+        trial: replace(stored[trial], result=replace(stored[trial].result, failed=0.9)) for trial in (first, third)
+    }
+    again = {fourth: replace(stored[fourth], settings=dict(stored[fourth].settings) | {"seed": 99})}
+    found = robust_of(uncertain.data, stored | often | again, {trial: trial for trial in stored})
+    assert (found.fragile, found.others) == (2, 1)
+    assert found.rows == [second]

@@ -4,6 +4,7 @@ import pytest
 
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.drawing.part_sheet import part_sheet
+from pareto_monoped.cad.drawing.plan import plan_of
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.geometry.features import Hole
 from pareto_monoped.geometry.parts import layer, machined_part
@@ -95,3 +96,20 @@ def test_holes_that_look_alike_have_the_heights_of_their_flange():
         assert f"{prefix} 20 {joined} 25" in words(part)
         alike = machined_part(name="ring", role=Role.BRACKET, prisms=(layer(outline, 0.0, 3.0, front, rear),))
         assert f"{prefix} 0 {joined} 3" not in words(alike)
+
+
+def test_layers_are_one_only_with_as_many_holes():
+    """Else a slot of one layer would go through the other, or a slot that goes on would end between them."""
+    outline, slot = rectangle(width_mm=60.0, height_mm=40.0), rectangle(width_mm=6.0, height_mm=3.0, x_mm=9.0)
+    other = rectangle(width_mm=6.0, height_mm=3.0, x_mm=-9.0)
+
+    def layers(*holes):
+        prisms = [layer(outline, 4.0 * k, 4.0 * (k + 1), *each) for k, each in enumerate(holes)]
+        plan = plan_of(machined_part(name="plate", role=Role.BRACKET, prisms=tuple(prisms)))
+        return [(one.low, one.high, len(one.holes)) for one in plan.layers]
+
+    assert layers([slot], [slot]) == [(0.0, 8.0, 1)]
+    assert layers([], [slot]) == [(4.0, 8.0, 1), (0.0, 4.0, 0)]
+    assert layers([slot], [slot, other]) == [(4.0, 8.0, 2), (0.0, 4.0, 1)]
+    assert layers([slot, other], [slot]) == [(4.0, 8.0, 1), (0.0, 4.0, 2)]
+    assert layers([slot], [other]) == [(4.0, 8.0, 1), (0.0, 4.0, 1)]
