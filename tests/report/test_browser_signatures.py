@@ -3,8 +3,8 @@
 A walk uses every control that it finds in the document, every key, and the mouse; after each step it signs what has
 changed: the document with the values of its fields, the address, the data of charts with the words over each mark,
 calls of canvases, copied and downloaded text. Other tests prove what is right; here a change is seen. After one that
-is wanted, make ``signatures.json`` again: ``PARETO_MONOPED_SIGN=1 python -m pytest tests/report/test_browser_signatures.py``.
-Chart data come from ``walk.js``, which also holds each chart in view: the page then follows at once, and nothing waits.
+is wanted, make ``signatures.json`` again, as CONTRIBUTING.md says. The page's clock stands still between steps, and
+``walk.js``, which reads the page, holds each chart in view: the page then follows at once, and nothing waits.
 """
 
 import re
@@ -36,7 +36,8 @@ ASSETS = resources.files("pareto_monoped") / "report" / "assets"
 RANDOM = {"algorithm": {"name": "random"}, "strength": False}
 """A random search asks for the same trials on every machine, whatever the last digits of its jumps are."""
 SEVERAL = RANDOM | {
-    "name": "several <b>", "evaluations": 50, "motor": ["U8", "VT8020", "MN8014"], "gear_list": True, "rules": "iso6336",
+    "name": "several <b>", "evaluations": 50,
+    "motor": ["U8", "VT8020", "MN8014"], "gear_list": True, "rules": "iso6336",
     "objectives": ["height_m", "electrical_energy_j", "mass_kg"], "constraints": {"mass_kg": {"max": 5.6}},
     "variables": {"knee_release_rad": {"lower": 0.0, "upper": 0.4}, "start_height_m": {"lower": 0.4, "upper": 0.6}},
 }  # fmt: skip
@@ -54,7 +55,7 @@ FEW = 4
 
 
 def stored(folder, changes):
-    """A study made in this process, for to start another one takes longer."""
+    """A study made in this process: another one takes longer to start."""
     study = study_from_dict(SETTINGS | changes, source="test")
     db = folder / f"signed_{study.seed}_{study.evaluations}.db"
     run(study, db, workers=1)
@@ -274,7 +275,7 @@ class Walk:
         def at(name, share):
             return self.page.evaluate("([name, share]) => walk.axis(name, share)", [name, share])
 
-        (x, y), (x2, y2) = at(first, 0.4), at(second, 0.6)
+        x, y = at(first, 0.4)
         for k in (0, 4):
             self.point(f"lines {k}", x + 30, y + 20 * (k - 4))
         self.drag("along an axis", at(first, 0.2), at(first, 0.7))
@@ -373,10 +374,10 @@ DAMAGED = (
 def walks(one, two, browser):
     """Both pages after all of their controls have been used."""
     found = []
-    for made_, name in ((one, "one"), (two, "two")):
-        walk = Walk(browser, made_, name)
+    for made, name in ((one, "one"), (two, "two")):
+        walk = Walk(browser, made, name)
         walk.others = set().union(*(other.used for other in found))
-        card = made_.payload.studies[0]
+        card = made.payload.studies[0]
         trials = [card.trials.trial[row] for row in card.front]
         walk.use_all(walk.others)
         walk.press("#reset")
@@ -394,7 +395,7 @@ def walks(one, two, browser):
             energies = card.trials.columns["electrical_energy_j"]
             walk.go(f"at=0:{card.trials.trial[energies.index(max(energies))]}")
             walk.use_all()
-            walk.go(f"at=0:{made_.model}")
+            walk.go(f"at=0:{made.model}")
             for key in ("ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "+", "-"):
                 walk.key("#viewer canvas", key)
             walk.into_view("#viewer canvas")
