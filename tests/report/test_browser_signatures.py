@@ -352,8 +352,9 @@ TINT = "document.getElementById('front-chart').layout.font.color"
 VIEWS = (
     "range=height_m:0.8:&range=mass_kg::5.5&best=knee&rows=all&find=f&sort=-mass_kg",
     "range=height_m:0.5:0.9&best=compromise&log=xy&size=mass_kg&columns=mass_kg,height_m",
-    "range=height_m:9:&range=mass_kg::1",
+    "range=height_m:9:9&range=mass_kg::1",
     "range=energy_j::1&range=height_m:0.9:",
+    "range=energy_j::20&range=height_m:1.2:&range=mass_kg::4.2&range=drift_m::0.01",
     "best=most:mass_kg&x=mass_kg&y=energy_j&colour=height_m&log=x&zoom=4:6:20:90",
     "best=least:energy_j&space=1&colour=mass_kg&size=height_m",
     "layers=front,infeasible,floor&parallel=height_m,mass_kg&colour=",

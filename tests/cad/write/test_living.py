@@ -365,7 +365,7 @@ def numbers_of(step):
     return [numbers_of(one) for one in step] if isinstance(step, tuple | list) else step
 
 
-def test_what_other_drivers_make_is_what_it_was(living):
+def test_signatures_of_what_other_drivers_make(living):
     """Parts, places and solids under two sets of drivers, for a change of any function between them and the drivers."""
     found = {}
     for set_name, factors in (("longer", NET), ("shorter", OTHER_NET)):
