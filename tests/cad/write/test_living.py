@@ -11,6 +11,7 @@ import re
 import subprocess
 import sys
 from collections import Counter
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -30,6 +31,7 @@ from pareto_monoped.design import RULE_SETS
 from pareto_monoped.geometry.shapes import Circle, Pattern
 from pareto_monoped.robot.build import build_robot
 from tests.lazily import Lazily
+from tests.records import compare, signature
 
 bd = Lazily("build123d")
 kernel = Lazily("pareto_monoped.cad.kernel.solids")
@@ -341,3 +343,56 @@ def test_only_the_parts_asked_for_are_made(names, tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "argv", ["model.py", "--parts", "foot,base_rod", "--out", str(tmp_path / "some")])
     names["main"]()
     assert made == [tmp_path / "some" / "foot.step", tmp_path / "some" / "base_rod.step"]
+
+
+NET = {"thigh_length": 1.07, "hip_module": 1.04, "knee_face_width": 1.15, "leg_plate": 1.2}
+OTHER_NET = {"shank_length": 0.93, "knee_module": 0.97, "hip_face_width": 0.9}
+SOLIDS = (
+    "thigh_plate_inner", "shank_core", "foot", "base_rod", "hip_mount_screw", "drive_sprocket", "hip_actuator_planet",
+)  # fmt: skip
+"""Parts that need every kind of step between them; the others' steps are signed alone."""
+
+
+def plain(number):
+    """To nine digits: the last ones are the machine's."""
+    return float(f"{number:.9g}") if abs(number) > 1e-9 else 0.0
+
+
+def numbers_of(step):
+    """A step, or any list in it, with its numbers as those of a signature."""
+    if isinstance(step, float | int):
+        return plain(step)
+    return [numbers_of(one) for one in step] if isinstance(step, tuple | list) else step
+
+
+def test_signatures_of_what_other_drivers_make(living):
+    """Parts, places and solids under two sets of drivers, for a change of any function between them and the drivers."""
+    found = {}
+    for set_name, factors in (("longer", NET), ("shorter", OTHER_NET)):
+        values = {one.name: one.value for one in living.drivers}
+        names = run(living, **{name: values[name] * factor for name, factor in factors.items()})
+        found[f"{set_name} formulas"] = signature([plain(names[one.name]) for one in living.formulas])
+        for part, (function, *looks) in names["PARTS"].items():
+            found[f"{set_name} {part}"] = signature(numbers_of(function()), numbers_of(looks))
+        for unit, _, z, over, members in names["UNITS"]:
+            moves = [at.wrapped.Transformation() for member in members for at in names["locations"](member, z, over)]
+            places = [move.Value(row, column) for move in moves for row in (1, 2, 3) for column in (1, 2, 3, 4)]
+            found[f"{set_name} {unit} places"] = signature([round(x, 6) + 0.0 for x in places])
+        for part in SOLIDS if set_name == "longer" else SOLIDS[:2]:
+            shape = names["solid"](part)
+            box = shape.bounding_box()
+            sizes = [shape.volume, *shape.center(), *box.min, *box.max, *shape.color]
+            sizes = [float(f"{x:.6g}") if abs(x) > 1e-5 else 0.0 for x in sizes]
+            found[f"{set_name} {part} solid"] = signature(sizes, shape.label)
+    compare(found, Path(__file__).parent / "living_signatures.json")
+
+
+def test_few_teeth_are_undercut_and_many_are_not(names):
+    """Their roots end where the rack's rounding does; an undercut root ends before, on the involute."""
+    alpha = math.radians(20.0)
+    assert names["root_end"](40, 0.0, alpha) == 0.5 * math.pi - alpha
+    end = names["root_end"](10, 0.0, alpha)
+    assert 0.0 < end < 0.5 * math.pi - alpha
+    along, across = names["cut_by_rack"](10, 0.0, end, alpha)
+    middle = math.pi / 10 - names["half_angle"](10, 1.0, 0.0, alpha, math.hypot(along, across))
+    assert math.atan2(across, along) == pytest.approx(middle, abs=1e-9)
