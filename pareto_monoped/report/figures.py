@@ -1,5 +1,6 @@
 """Figures for papers, as SVG and PNG in a plain style that stays readable in black and white, and of sensitivities."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -107,11 +108,12 @@ def _convergence(payload: Payload, figure: Any) -> bool:
 
 
 def _along(payload: Payload, figure: Any) -> bool:
-    figure.set_size_inches(2 * _WIDTH_IN, 1.4 * _HEIGHT_IN)
+    rows = max(2, math.ceil(len(payload.variables) / 4))
+    figure.set_size_inches(2 * _WIDTH_IN, 0.7 * rows * _HEIGHT_IN)
     names = {quantity.name: quantity for quantity in QUANTITIES}
     along = payload.objectives[0]
     for k, variable in enumerate(payload.variables):
-        axes = figure.add_subplot(2, 4, k + 1)
+        axes = figure.add_subplot(rows, 4, k + 1)
         quantity = names[variable["name"]]
         for i, card in enumerate(payload.studies):
             columns = card.trials.columns

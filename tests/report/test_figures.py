@@ -180,6 +180,15 @@ def test_variables_along_the_front_are_in_their_shown_units(payload, data):
     np.testing.assert_allclose(thigh.get_xdata(), data.front()["height_m"], rtol=1e-4)
 
 
+def test_more_than_eight_variables_have_a_third_row(payload):
+    """Two studies that free ten variables together ended with matplotlib's own error."""
+    figure = mpl.Figure()
+    many = replace(payload, variables=[*payload.variables, *payload.variables][:10])
+    _along(many, figure)
+    places = [axes.get_subplotspec().get_geometry() for axes in figure.axes]
+    assert [(rows, columns, first) for rows, columns, first, _ in places] == [(3, 4, k) for k in range(10)]
+
+
 def test_link_masses_have_a_line_per_motor(both):
     figure = mpl.Figure()
     _links(both, figure)
