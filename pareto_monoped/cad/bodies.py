@@ -97,6 +97,14 @@ def bodies_of(placed: Sequence[Instance]) -> tuple[Body, ...]:
     return tuple(Body(unit=placed[k].unit, instances=members, instance=placed[k]) for k, members in first.items())
 
 
+def partners_of(bodies: Sequence[Body], body: int) -> list[int]:
+    """Return the bodies that a body's record names as its partner in a joint; none where it has no joint."""
+    joint = bodies[body].instance.part.joint
+    partners = [j for j, other in enumerate(bodies) if joint and other.instance.part.name == joint.partner]
+    # Both actuators have parts of one name; a chain's sprocket may be in another unit.
+    return [j for j in partners if bodies[j].unit == bodies[body].unit] or partners
+
+
 def blocking_of(placed: Sequence[Instance]) -> Blocking:
     """Look at all pairs of bodies of an assembly in ``retention.POSE``."""
     bodies = bodies_of(placed)
@@ -135,12 +143,9 @@ def _joined(bodies: Sequence[Body], wanted: frozenset[JointKind]) -> Bools:
     found = np.zeros((len(bodies), len(bodies)), dtype=bool)
     for i, body in enumerate(bodies):
         joint = body.instance.part.joint
-        if joint is None or joint.kind not in wanted:
-            continue
-        partners = [j for j, other in enumerate(bodies) if other.instance.part.name == joint.partner]
-        # Both actuators have parts of one name; a chain's sprocket may be in another unit.
-        near = [j for j in partners if bodies[j].unit == body.unit] or partners
-        found[i, near] = found[near, i] = True
+        if joint is not None and joint.kind in wanted:
+            partners = partners_of(bodies, i)
+            found[i, partners] = found[partners, i] = True
     return found
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.cad.assembly import Instance, instances
-from pareto_monoped.cad.bodies import Blocking, blocking_of
+from pareto_monoped.cad.bodies import Blocking, blocking_of, partners_of
 from pareto_monoped.cad.cables import cables
 from pareto_monoped.cad.check.retention import POSE
 from pareto_monoped.cad.picture.drawing import png
@@ -41,7 +41,12 @@ _FROM = {
     "+z": "from above",
     "-z": "from below",
 }
-_VERB = {JointKind.PRESSED: "Press", JointKind.BONDED: "Bond", JointKind.MOULDED: "Mould", JointKind.ENGAGED: "Lay"}
+_VERB = {
+    JointKind.PRESSED: "Press",
+    JointKind.BONDED: "Bond",
+    JointKind.THREADED: "Screw",
+    JointKind.ENGAGED: "Lay",
+}  # moulding has a section of its own, and a rotor comes in its bearings
 _TAILS = "80 mm for the splice inside the motor's back and 60 mm for the terminals"
 _SLACK = 0.01
 """Sideways play of the chain's slack strand over its free length: half of what chain makers allow for level drives,
@@ -163,14 +168,14 @@ def _step(step: Step, blocking: Blocking) -> Iterator[str]:
         yield f"<li>Take {_listed(sorted(step.base), blocking)}.</li>"
     elif step.base_number != step.number - 1:
         yield f"<li>Take what step {step.base_number} has made.</li>"
-    yield from (f"<li>{_addition(addition, blocking)}</li>" for addition in step.additions)
-    yield from (f"<li>{line}</li>" for line in (*_bonded(step, blocking), *_greased(step, blocking)))
+    yield from (f"<li>{_addition(addition, step, blocking)}</li>" for addition in step.additions)
+    yield from (f"<li>{line}</li>" for line in (*_joined(step, blocking), *_greased(step, blocking)))
     for k in step.fasteners:
         yield f"<li>{_fastener(k, blocking)}</li>"
     yield f"</ol><img src='step_{step.number:02d}.png' alt='step {step.number}' loading='lazy'></section>"
 
 
-def _addition(addition: Addition, blocking: Blocking) -> str:
+def _addition(addition: Addition, step: Step, blocking: Blocking) -> str:
     way = _FROM[addition.out]
     if addition.number is not None:
         return f"Bring what step {addition.number} has made {way}."
@@ -178,10 +183,12 @@ def _addition(addition: Addition, blocking: Blocking) -> str:
     if len(members) > 1:
         return f"Put together {_listed(members, blocking)}, and bring them {way}."
     joint = blocking.bodies[members[0]].instance.part.joint
+    if joint is None or step.members.isdisjoint(partners_of(blocking.bodies, members[0])):
+        # Its joint, if it has one, is made in the step in which its partner comes.
+        return f"Put {_listed(members, blocking)} in place {way}."
     several = len(blocking.bodies[members[0]].instances) > 1
-    how = f" {'They are' if several else 'It is'} {escape(joint.text.replace('_', ' '))}." if joint is not None else ""
-    verb = "Put" if joint is None else _VERB.get(joint.kind, "Put")
-    return f"{verb} {_listed(members, blocking)} in place {way}.{how}"
+    how = f"{'They are' if several else 'It is'} {escape(joint.text.replace('_', ' '))}."
+    return f"{_VERB.get(joint.kind, 'Put')} {_listed(members, blocking)} in place {way}. {how}"
 
 
 def _made_before(step: Step) -> list[frozenset[int]]:
@@ -190,19 +197,18 @@ def _made_before(step: Step) -> list[frozenset[int]]:
     return made if step.base_number is None else [step.base, *made]
 
 
-def _bonded(step: Step, blocking: Blocking) -> Iterator[str]:
-    """Yield the bonds between what a step brings together; the bond of a single part stands in that part's own line."""
+def _joined(step: Step, blocking: Blocking) -> Iterator[str]:
+    """Yield the joints between what a step brings together; that of a single part stands in that part's own line."""
     alone = {k for one in step.additions if one.number is None and len(one.members) == 1 for k in one.members}
     for k in sorted(step.members - alone):
-        body = blocking.bodies[k]
-        joint = body.instance.part.joint
-        if joint is None or joint.adhesive is None:
+        joint = blocking.bodies[k].instance.part.joint
+        if joint is None or joint.kind not in _VERB:
             continue
-        others = ((m, blocking.bodies[m]) for m in step.members)
-        partners = {m for m, other in others if (other.unit, other.instance.part.name) == (body.unit, joint.partner)}
+        partners = step.members.intersection(partners_of(blocking.bodies, k))
         if partners and not any(k in made and partners & made for made in _made_before(step)):
-            verb = "are" if len(body.instances) > 1 else "is"
-            yield f"Bond what comes together: {_counted(k, blocking)} {verb} {escape(joint.text.replace('_', ' '))}."
+            verb = "are" if len(blocking.bodies[k].instances) > 1 else "is"
+            how = escape(joint.text.replace("_", " "))
+            yield f"{_VERB[joint.kind]} what comes together: {_counted(k, blocking)} {verb} {how}."
 
 
 def _greased(step: Step, blocking: Blocking) -> Iterator[str]:

@@ -16,7 +16,7 @@ from pareto_monoped.cad.shape.outlines import contours, polygon
 from pareto_monoped.cad.write import meshes
 from pareto_monoped.cad.write.assembly_pack import COLLAR_MM, foot_mould
 from pareto_monoped.design import Design
-from pareto_monoped.geometry.roles import FASTENERS, Role
+from pareto_monoped.geometry.roles import FASTENERS, JointKind, Role
 from pareto_monoped.robot.build import build_robot
 
 
@@ -72,6 +72,30 @@ def test_the_steps_name_every_adhesive_and_grease_where_its_part_is_put_in(pack,
     # A bond is made when the second of its parts comes, although the first stands in an earlier line or step.
     together = [line for line in lines if line.startswith("Bond what comes together: ")]
     assert any("ring is bonded into ring housing" in line for line in together)
+
+
+def sections(pack):
+    """The lines of each step."""
+    page = pack["assembly/index.html"].decode()
+    page = page[: page.index("<h2>Screws</h2>")]
+    return [re.findall(r"<li>(.*?)</li>", one) for one in page.split("<section>")[1:]]
+
+
+def test_each_joint_is_made_once_and_not_before_its_partner_is_there(pack, listed):
+    """A ring is not said to be bonded into a housing that comes later, nor a nut to be on such a stud."""
+    steps, places = sections(pack), {}
+    for part, count in ((u.part, len(u.units)) for u in listed):
+        if part.joint is not None and part.joint.kind not in (JointKind.MOULDED, JointKind.RUNNING):
+            key = tuple(text.replace("_", " ") for text in (part.name, part.joint.text, part.joint.partner))
+            places[key] = places.get(key, 0) + count
+    assert len(places) > 15
+    for (name, said, partner), count in places.items():
+        line = re.compile(rf"\b{name} (in place [a-z ]+\. (It|They) )?(is|are) {re.escape(said)}\.")
+        made = [k for k, lines in enumerate(steps) if any(map(line.search, lines))]
+        assert len(made) == count, (name, said)
+        named = re.compile(rf"\b{partner}\b.*(\.|, | and )")
+        there = [k for k, lines in enumerate(steps) for one in lines if named.search(one.split(said)[0])]
+        assert min(there) <= min(made), (name, said)
 
 
 def test_every_screw_has_a_torque_and_a_lock(pack, listed):
