@@ -33,8 +33,9 @@ _PLAY_MM = 0.25  # of fits that turn or slide, on one side
 _NEAR_MM = 0.8  # a screw's shank is nearer than this to the parts that it goes through
 _DEPTH_MM = 0.2  # least height that a screw and what it goes through have in common
 _FAR_MM = 1000.0  # out of the robot
-_LASTING = frozenset({JointKind.MOULDED, JointKind.RUNNING})
-"""Joints that are never taken apart: what is cast onto a part, and a rotor in its supplier's bearings."""
+_LASTING = frozenset({JointKind.MOULDED, JointKind.RUNNING, JointKind.STUCK})
+"""Joints that are never taken apart: what is cast onto a part, a rotor in its supplier's bearings, and loose needles,
+which come with their planet."""
 _FLEXIBLE = frozenset({JointKind.ENGAGED, JointKind.THREADED})
 """Joints of parts that do not come straight: a chain is laid around its sprocket, a turnbuckle is turned."""
 _LIMP = frozenset({Role.CHAIN, Role.TURNBUCKLE})  # parts of a chain drive, which are put together link by link

@@ -67,6 +67,7 @@ class JointKind(StrEnum):
     BONDED = "bonded"
     THREADED = "threaded"
     MOULDED = "moulded"
+    STUCK = "stuck"  # loose needles with grease in their bore
     ENGAGED = "engaged"  # a chain on the teeth of its sprocket
     RUNNING = "running"  # a rotor in bearings that its supplier built in
 

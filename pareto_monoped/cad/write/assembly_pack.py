@@ -45,6 +45,7 @@ _VERB = {
     JointKind.PRESSED: "Press",
     JointKind.BONDED: "Bond",
     JointKind.THREADED: "Screw",
+    JointKind.STUCK: "Stick",
     JointKind.ENGAGED: "Lay",
 }  # moulding has a section of its own, and a rotor comes in its bearings
 _TAILS = "80 mm for the splice inside the motor's back and 60 mm for the terminals"
