@@ -337,7 +337,7 @@ def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, sha
                 ),
             ),
             note=f"{_GAP_MM:g} mm from the magnet, within 0.5 mm",
-            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="encoder_cap", adhesive=EPOXY),
+            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="encoder_cap", adhesive=EPOXY, first=True),
         ),
         housing_part(
             name="encoder_cap",

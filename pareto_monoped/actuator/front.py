@@ -312,7 +312,9 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             0.0,
             Group.OUTPUT,
             "carries the sun's end in the carrier",
-            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="carrier", adhesive=BEARING_RETAINER),
+            joint=Joint(
+                kind=JointKind.BONDED, how="bonded into", partner="carrier", adhesive=BEARING_RETAINER, first=True
+            ),
         ),
         *_web_screws(at, settings),
     )

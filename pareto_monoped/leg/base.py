@@ -155,7 +155,13 @@ def _far_cheek(z0_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         ),
         replace(
             bearing_part("base_bearing", d, z0_mm=z0_mm),
-            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="base_far_cheek", adhesive=BEARING_RETAINER),
+            joint=Joint(
+                kind=JointKind.BONDED,
+                how="bonded into",
+                partner="base_far_cheek",
+                adhesive=BEARING_RETAINER,
+                first=True,
+            ),
         ),
     )
 

@@ -197,15 +197,15 @@ def test_every_part_of_a_robot_is_put_in_its_place_once(planned):
     assert steps[-1].members == frozenset(range(len(blocking.bodies)))
 
 
-@pytest.mark.parametrize("kind", [JointKind.STUCK])
+@pytest.mark.parametrize("kind", [JointKind.STUCK, JointKind.PRESSED, JointKind.BONDED])
 def test_what_is_stuck_or_pressed_into_a_part_comes_with_it(planned, kind):
-    """Loose needles would fall out of a planet that comes later; a bearing's cup needs a press."""
+    """Loose needles would fall out of a planet that comes later; a bearing's cup needs a press. So do some bonds."""
     _, blocking, assembly = planned
     joints = [(k, body.instance.part.joint) for k, body in enumerate(blocking.bodies)]
     pairs = [
         (k, partner)
         for k, joint in joints
-        if joint and joint.kind is kind
+        if joint and joint.kind is kind and (joint.first or kind is not JointKind.BONDED)
         for partner in partners_of(blocking.bodies, k)
     ]
     assert len(pairs) >= 2
