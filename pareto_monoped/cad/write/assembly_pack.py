@@ -171,6 +171,10 @@ def _step(step: Step, blocking: Blocking) -> Iterator[str]:
         yield f"<li>Take what step {step.base_number} has made.</li>"
     yield from (f"<li>{_addition(addition, step, blocking)}</li>" for addition in step.additions)
     yield from (f"<li>{line}</li>" for line in (*_joined(step, blocking), *_greased(step, blocking)))
+    watched = [k for k in sorted(step.members) if blocking.bodies[k].instance.part.at_assembly]
+    for k in (k for k in watched if _is_put_in(k, step, blocking)):
+        text = blocking.bodies[k].instance.part.at_assembly
+        yield f"<li>{escape(_counted(k, blocking))}: {escape(text)}.</li>"
     for k in step.fasteners:
         yield f"<li>{_fastener(k, blocking)}</li>"
     yield f"</ol><img src='step_{step.number:02d}.png' alt='step {step.number}' loading='lazy'></section>"
@@ -198,15 +202,21 @@ def _made_before(step: Step) -> list[frozenset[int]]:
     return made if step.base_number is None else [step.base, *made]
 
 
+def _is_put_in(body: int, step: Step, blocking: Blocking) -> bool:
+    """Return whether a step makes a body's joint with its partner, or brings the body if it has none."""
+    joint = blocking.bodies[body].instance.part.joint
+    if joint is None or joint.kind not in _VERB:
+        return not any(body in made for made in _made_before(step))
+    partners = step.members.intersection(partners_of(blocking.bodies, body))
+    return bool(partners) and not any(body in made and partners & made for made in _made_before(step))
+
+
 def _joined(step: Step, blocking: Blocking) -> Iterator[str]:
     """Yield the joints between what a step brings together; that of a single part stands in that part's own line."""
     alone = {k for one in step.additions if one.number is None and len(one.members) == 1 for k in one.members}
     for k in sorted(step.members - alone):
         joint = blocking.bodies[k].instance.part.joint
-        if joint is None or joint.kind not in _VERB:
-            continue
-        partners = step.members.intersection(partners_of(blocking.bodies, k))
-        if partners and not any(k in made and partners & made for made in _made_before(step)):
+        if joint is not None and joint.kind in _VERB and _is_put_in(k, step, blocking):
             verb = "are" if len(blocking.bodies[k].instances) > 1 else "is"
             how = escape(joint.text.replace("_", " "))
             yield f"{_VERB[joint.kind]} what comes together: {_counted(k, blocking)} {verb} {how}."

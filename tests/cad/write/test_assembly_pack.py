@@ -3,6 +3,7 @@
 import csv
 import io
 import re
+from html import escape
 
 import manifold3d as m3
 import numpy as np
@@ -96,6 +97,26 @@ def test_each_joint_is_made_once_and_not_before_its_partner_is_there(pack, liste
         named = re.compile(rf"\b{partner}\b.*(\.|, | and )")
         there = [k for k, lines in enumerate(steps) for one in lines if named.search(one.split(said)[0])]
         assert min(there) <= min(made), (name, said)
+
+
+def test_what_to_watch_stands_in_the_step_in_which_a_part_is_put_in(pack, listed):
+    """That dowels' holes are reamed together first, say: where the dowels are bonded, once in each unit."""
+    steps, looked_at = sections(pack), 0
+    for part in (u.part for u in listed if u.part.at_assembly):
+        name, joint = part.name.replace("_", " "), part.joint.text.replace("_", " ") if part.joint else ""
+        watched = re.compile(rf"(\d+ x )?{name}: {re.escape(escape(part.at_assembly))}\.")
+        said = [k for k, lines in enumerate(steps) if any(map(watched.fullmatch, lines))]
+        units = {
+            unit
+            for u in listed
+            if u.part.name == part.name and u.part.at_assembly == part.at_assembly
+            for unit in u.units
+        }
+        assert len(said) >= len(units), name
+        put_in = [k for k, lines in enumerate(steps) for line in lines if f"{name} " in f"{line} " and joint in line]
+        assert set(said) <= set(put_in), name
+        looked_at += part.role is Role.PIN and "reamed together first" in part.at_assembly
+    assert looked_at >= 7
 
 
 def test_every_screw_has_a_torque_and_a_lock(pack, listed):
