@@ -21,7 +21,14 @@ from pareto_monoped.actuator.features import (
     tube,
 )
 from pareto_monoped.actuator.front import carrier_parts, gear_parts
-from pareto_monoped.actuator.layout import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, ExternalLayout, Layout, external_layout
+from pareto_monoped.actuator.layout import (
+    COUPLING_DOWEL,
+    DOWEL_STANDS_OUT_MM,
+    NECK_SET,
+    ExternalLayout,
+    Layout,
+    external_layout,
+)
 from pareto_monoped.actuator.motor import HolePattern, Motor, envelope_length, motor_order
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.parts import Part
@@ -77,19 +84,22 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
     )
     rear, windows = centre_hole(shell.z_motor, 1.0), _coupling_windows(float(spline.tip_radius_mm), output)
     return (
-        sun_part(
-            at,
-            shell.neck,
-            settings,
-            spline,
-            data.spline.sun_shaft_radius_mm,
-            behind=(
-                *seat_between(shell.z_coupling, at.z_gear_back, data.spline.sun_shaft_radius_mm),
-                *slab(rear.high_mm, shell.z_coupling, spline),
-                *slab(shell.z_motor, rear.high_mm, spline, *rear.shapes),
+        replace(
+            sun_part(
+                at,
+                shell.neck,
+                settings,
+                spline,
+                data.spline.sun_shaft_radius_mm,
+                behind=(
+                    *seat_between(shell.z_coupling, at.z_gear_back, data.spline.sun_shaft_radius_mm),
+                    *slab(rear.high_mm, shell.z_coupling, spline),
+                    *slab(shell.z_motor, rear.high_mm, spline, *rear.shapes),
+                ),
+                seat_mm=data.spline.sun_shaft_radius_mm,
+                rear=rear,
             ),
-            seat_mm=data.spline.sun_shaft_radius_mm,
-            rear=rear,
+            at_assembly=NECK_SET,
         ),
         coupling_part(
             slab(shell.z_motor, shell.z_coupling, r_coupling, spline, through, dowels, *windows),

@@ -336,7 +336,8 @@ def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, sha
                     kind="encoder", designation="RLS RM08, 12 bit", remark="state output and supply when ordering"
                 ),
             ),
-            note=f"{_GAP_MM:g} mm from the magnet, within 0.5 mm",
+            note=(gap := f"{_GAP_MM:g} mm from the magnet, within 0.5 mm"),
+            at_assembly=f"bond it so deep in its cap that it is {gap}, with the backplate on",
             joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="encoder_cap", adhesive=EPOXY, first=True),
         ),
         housing_part(

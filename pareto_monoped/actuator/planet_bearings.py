@@ -110,6 +110,8 @@ def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             catalogue_mass_kg=rows.needles * one_kg * length,
             purchases=_ordered_needles(rows, data.diameter_mm),
             note="full complement, greased",
+            at_assembly=f"{rows.needles} loose rollers in each row: set them all into the grease before the planet "
+            "goes over its pin",
             joint=_IN_PLANET,
             places_mm=needles,
         ),

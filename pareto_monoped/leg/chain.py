@@ -164,6 +164,8 @@ def _fastened(
                     remark="riveted into the fork",
                 ),
             ),
+            at_assembly="rivet its pin through the chain's last link with a block of steel held against its other "
+            "head, so that no blow reaches plates or sprockets; the link must still turn",
             note=f"fork with {hand} stud {thread.text}, {TRAVEL + _NUT + _SPARE + _STUD_DEPTH:g} mm long without "
             f"undercut, run-out before the fork {_RUN_OUT:g} mm at most: keep the nut clear of it at the short end of "
             "the travel; drawn as a square of its area; the pin, drawn as a boss, is no part of it: it is the chain's "

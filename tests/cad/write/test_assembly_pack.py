@@ -113,10 +113,28 @@ def test_what_to_watch_stands_in_the_step_in_which_a_part_is_put_in(pack, listed
             for unit in u.units
         }
         assert len(said) >= len(units), name
-        put_in = [k for k, lines in enumerate(steps) for line in lines if f"{name} " in f"{line} " and joint in line]
+        put_in = [
+            k for k, lines in enumerate(steps) for line in lines if re.search(rf"\b{name}\b", line) and joint in line
+        ]
         assert set(said) <= set(put_in), name
         looked_at += part.role is Role.PIN and "reamed together first" in part.at_assembly
     assert looked_at >= 7
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("thigh core", "epoxy on its whole faces"),
+        ("shank core", "epoxy on its whole faces"),
+        ("sun", "bond it 0.2 +-0.1 mm deeper"),
+        ("encoder", "1 mm from the magnet, within 0.5 mm"),
+        ("ring", "the planets on their carrier centre it"),
+        ("2 x turnbuckle end hip", "steel held against its other head"),
+        ("knee spacer", "ground before it goes in"),
+    ],
+)
+def test_a_step_says_what_is_set_glued_or_ground_in_it(pack, name, said):
+    assert any(line.startswith(f"{name}: ") and said in line for lines in sections(pack) for line in lines)
 
 
 def test_every_screw_has_a_torque_and_a_lock(pack, listed):
