@@ -141,7 +141,8 @@ def _page(
     )
     yield "<h2>Steps</h2>"
     for step in steps:
-        yield from _step(step, blocking)
+        yield from _step(step, blocking, product)
+    yield from _before_the_first_jump(product)
     yield (
         "<h2>Screws</h2><p>Clean the threads, wet them with the locker, tighten crosswise. Countersunk heads carry 80 "
         "percent of their threads (ISO 10642, ISO 14581; marked 08.8 and 010.9), so that they are tightened to 75 "
@@ -163,7 +164,7 @@ def _page(
     yield "</html>"
 
 
-def _step(step: Step, blocking: Blocking) -> Iterator[str]:
+def _step(step: Step, blocking: Blocking, product: Listed) -> Iterator[str]:
     yield f"<section><h3>{step.number}. {escape(titled(step, blocking))}</h3><ol>"
     if step.base_number is None:
         yield f"<li>Take {_listed(sorted(step.base), blocking)}.</li>"
@@ -175,6 +176,7 @@ def _step(step: Step, blocking: Blocking) -> Iterator[str]:
     for k in (k for k in watched if _is_put_in(k, step, blocking)):
         text = blocking.bodies[k].instance.part.at_assembly
         yield f"<li>{escape(_counted(k, blocking))}: {escape(text)}.</li>"
+    yield from (f"<li>{line}</li>" for line in _held_for_now(step, blocking, product))
     for k in step.fasteners:
         yield f"<li>{_fastener(k, blocking)}</li>"
     yield f"</ol><img src='step_{step.number:02d}.png' alt='step {step.number}' loading='lazy'></section>"
@@ -234,6 +236,24 @@ def _greased(step: Step, blocking: Blocking) -> Iterator[str]:
         yield escape(f"Grease with {designation}: {'; '.join(places)}.")
 
 
+def _held_for_now(step: Step, blocking: Blocking, product: Listed) -> Iterator[str]:
+    """Yield what holds a motor until another unit's screws do: the actuator's own, which are left out of the robot."""
+    actuators = {"hip_actuator": product.robot.hip, "knee_actuator": product.robot.knee}
+    for k, body in enumerate(blocking.bodies):
+        if body.instance.part.role is not Role.MOTOR_STATOR or k not in step.members:
+            continue
+        screws = [part for part in actuators[body.unit].parts if part.role is Role.STATOR_SCREW]
+        others = [j for j, through in blocking.goes_through.items() if k in through and j not in step.fasteners]
+        for j in (j for j in others if screws and blocking.bodies[j].unit != body.unit):
+            held = {m for m in blocking.goes_through[j] if blocking.bodies[m].unit == body.unit}
+            if held <= step.members and not any(held <= made for made in _made_before(step)):
+                spare = escape(f"{float(screws[0].count):g} x {screws[0].purchases[0].designation}")
+                yield (
+                    f"Hold {_listed(sorted(held), blocking)} together with {spare}, which are not counted in the parts "
+                    f"to buy, until the {_name(blocking, j)}s take their place: {screws[0].at_assembly}."
+                )
+
+
 def _fastener(body: int, blocking: Blocking) -> str:
     part, name = blocking.bodies[body].instance.part, _counted(body, blocking)
     if part.role not in FASTENERS:
@@ -250,6 +270,18 @@ def _listed(members: Sequence[int], blocking: Blocking) -> str:
 def _counted(body: int, blocking: Blocking) -> str:
     count = len(blocking.bodies[body].instances)
     return f"{count} x {_name(blocking, body)}" if count > 1 else _name(blocking, body)
+
+
+def _before_the_first_jump(product: Listed) -> Iterator[str]:
+    """Yield what is done when everything is together, each once for all its parts, with the torque of screws."""
+    last: dict[str, list[str]] = {}
+    for part in (unique.part for unique in product.unique if unique.part.at_last):
+        torque = f" ({tightening(part)[0]})" if part.role in FASTENERS else ""
+        last.setdefault(part.at_last, []).append(part.name.replace("_", " ") + torque)
+    yield "<h2>Before the first jump</h2><ol>"
+    for text, names in last.items():
+        yield f"<li>{escape(text[0].upper() + text[1:])}: {escape(', '.join(names))}.</li>"
+    yield "</ol>"
 
 
 def _screws(product: Listed) -> Iterator[tuple[str, ...]]:

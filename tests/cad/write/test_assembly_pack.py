@@ -10,13 +10,15 @@ import numpy as np
 import pytest
 import trimesh
 
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.cad.as_built import as_built
 from pareto_monoped.cad.assembly import Pose, instances
-from pareto_monoped.cad.product import ListedPart, part_file_name
+from pareto_monoped.cad.product import Listed, ListedPart, part_file_name
 from pareto_monoped.cad.shape.meshes import flaws
 from pareto_monoped.cad.shape.outlines import contours, polygon
-from pareto_monoped.cad.write import meshes
+from pareto_monoped.cad.write import assembly_pack, meshes
 from pareto_monoped.cad.write.assembly_pack import COLLAR_MM, foot_mould
-from pareto_monoped.design import Design
+from pareto_monoped.design import PAPER_CASES, Design
 from pareto_monoped.geometry.roles import FASTENERS, JointKind, Role
 from pareto_monoped.robot.build import build_robot
 
@@ -39,6 +41,16 @@ def listed(exported, actuator_map):
         units, part = tuple(dict.fromkeys(one.unit for one in members)), members[0].part
         found.append(ListedPart(name=part_file_name(units, part.name), part=part, count=len(members), units=units))
     return found
+
+
+@pytest.fixture(scope="module")
+def listed_framed():
+    """A robot whose two motors are framed."""
+    found = map_for("MN8014", "iso6336")
+    robot = build_robot(as_built(PAPER_CASES["C"].design, found), found)
+    unique = {id(part): (unit.name, part) for unit in robot.units for part in unit.parts}
+    rows = [ListedPart(name=f"{unit}_{part.name}", part=part, count=1, units=(unit,)) for unit, part in unique.values()]
+    return Listed(robot=robot, unique=tuple(rows))
 
 
 def rows_of(pack):
@@ -135,6 +147,38 @@ def test_what_to_watch_stands_in_the_step_in_which_a_part_is_put_in(pack, listed
 )
 def test_a_step_says_what_is_set_glued_or_ground_in_it(pack, name, said):
     assert any(line.startswith(f"{name}: ") and said in line for lines in sections(pack) for line in lines)
+
+
+def test_screws_that_close_the_chain_of_bearings_are_tightened_at_the_end(pack):
+    page = pack["assembly/index.html"].decode()
+    last = page[page.index("<h2>Before the first jump</h2>") : page.index("<h2>Screws</h2>")]
+    (line,) = re.findall(r"<li>(.*?)</li>", last)
+    assert line.startswith("Swing the thigh through its whole range; once it swings freely, tighten: ")
+    assert re.findall(r"base \w+ rod screw far \(\d\.\d N m\)", line) != []
+    driven = [line for lines in sections(pack) for line in lines if "rod screw far, " in line]
+    assert len(driven) == 2
+    assert all("by hand only, until the thigh has swung freely" in line for line in driven)
+
+
+def test_a_motor_whose_screws_come_late_is_held_until_then(listed_framed, monkeypatch):
+    """Its base is centred by the sun alone, so that no screw in it is tightened before the sun has turned."""
+    for name in ("step_picture", "stage_of", "png"):
+        monkeypatch.setattr(assembly_pack, name, lambda *_: b"")
+    steps = sections(assembly_pack.assembly_pack(listed_framed))
+    lines = [(k, line) for k, lines in enumerate(steps) for line in lines]
+    ((held, text),) = (
+        (k, line) for k, line in lines if line.startswith("Hold backplate and motor stator together with ")
+    )
+    assert "4 x cap screw ISO 4762 - M4 x 8 - 8.8" in text
+    assert "finger-tight now" in text
+    ((late, exchanged),) = ((k, line) for k, line in lines if line.startswith("4 x journal screw: "))
+    assert "take out the screws that have held it" in exchanged
+    assert late > held
+    (own,) = (k for k, line in lines if line.startswith("4 x stator screw: finger-tight now"))
+    turned = [k for k, line in lines if line.startswith("sun: ") and "tighten the screws in its base" in line]
+    assert len(turned) == 2
+    assert turned[0] > held
+    assert turned[1] > own
 
 
 def test_every_screw_has_a_torque_and_a_lock(pack, listed):
