@@ -166,7 +166,10 @@ def _far_cheek(z0_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
     )
 
 
-_SWUNG = "swing the thigh through its whole range; once it swings freely, tighten"
+_SWUNG = (
+    "swing the thigh through its whole range; once it swings freely, take off the knee driver, which covers two of "
+    "these screws, tighten them and put it back"
+)
 
 
 def _rods(far_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:

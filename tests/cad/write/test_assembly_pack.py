@@ -153,7 +153,7 @@ def test_screws_that_close_the_chain_of_bearings_are_tightened_at_the_end(pack):
     page = pack["assembly/index.html"].decode()
     last = page[page.index("<h2>Before the first jump</h2>") : page.index("<h2>Screws</h2>")]
     (line,) = re.findall(r"<li>(.*?)</li>", last)
-    assert line.startswith("Swing the thigh through its whole range; once it swings freely, tighten: ")
+    assert line.startswith("Swing the thigh through its whole range; once it swings freely, take off the knee driver, ")
     assert re.findall(r"base \w+ rod screw far \(\d\.\d N m\)", line) != []
     driven = [line for lines in sections(pack) for line in lines if "rod screw far, " in line]
     assert len(driven) == 2
