@@ -21,7 +21,14 @@ from pareto_monoped.actuator.features import (
     tube,
 )
 from pareto_monoped.actuator.front import carrier_parts, gear_parts
-from pareto_monoped.actuator.layout import COUPLING_DOWEL, DOWEL_STANDS_OUT_MM, ExternalLayout, Layout, external_layout
+from pareto_monoped.actuator.layout import (
+    COUPLING_DOWEL,
+    DOWEL_STANDS_OUT_MM,
+    NECK_SET,
+    ExternalLayout,
+    Layout,
+    external_layout,
+)
 from pareto_monoped.actuator.motor import HolePattern, Motor, envelope_length, motor_order
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.parts import Part
@@ -77,19 +84,23 @@ def _turning_parts(at: Layout, shell: ExternalLayout, motor: Motor, settings: Ac
     )
     rear, windows = centre_hole(shell.z_motor, 1.0), _coupling_windows(float(spline.tip_radius_mm), output)
     return (
-        sun_part(
-            at,
-            shell.neck,
-            settings,
-            spline,
-            data.spline.sun_shaft_radius_mm,
-            behind=(
-                *seat_between(shell.z_coupling, at.z_gear_back, data.spline.sun_shaft_radius_mm),
-                *slab(rear.high_mm, shell.z_coupling, spline),
-                *slab(shell.z_motor, rear.high_mm, spline, *rear.shapes),
+        replace(
+            sun_part(
+                at,
+                shell.neck,
+                settings,
+                spline,
+                data.spline.sun_shaft_radius_mm,
+                behind=(
+                    *seat_between(shell.z_coupling, at.z_gear_back, data.spline.sun_shaft_radius_mm),
+                    *slab(rear.high_mm, shell.z_coupling, spline),
+                    *slab(shell.z_motor, rear.high_mm, spline, *rear.shapes),
+                ),
+                seat_mm=data.spline.sun_shaft_radius_mm,
+                rear=rear,
             ),
-            seat_mm=data.spline.sun_shaft_radius_mm,
-            rear=rear,
+            at_assembly=f"{NECK_SET}; with the case closed, turn the output by hand until the motor has found its "
+            "place, and tighten the screws in its base before the adhesive sets",
         ),
         coupling_part(
             slab(shell.z_motor, shell.z_coupling, r_coupling, spline, through, dowels, *windows),
@@ -121,6 +132,9 @@ def _coupling_windows(hub_mm: float, output: HolePattern) -> tuple[Pattern, ...]
     return (Pattern(radius_mm=radius, pitch_radius_mm=middle, count=6),) if radius >= _LEAST_WINDOW_MM else ()
 
 
+_BY_HAND = "finger-tight now, as only the sun centres the motor: they are tightened once it has turned in its coupling"
+
+
 def _motor_screws(shell: ExternalLayout, motor: Motor, settings: ActuatorSettings) -> tuple[Part, ...]:
     """Build the screws into the motor's turning face and into its base."""
     casing, steel = settings.parts.casing, settings.materials.steel
@@ -140,19 +154,22 @@ def _motor_screws(shell: ExternalLayout, motor: Motor, settings: ActuatorSetting
             group=Group.ROTOR,
             note="into the motor's turning face, flush",
         ),
-        screw_part(
-            "stator_screw",
-            screw_for(base_holes.diameter_mm, 0.5 * base_holes.diameter_mm + 0.5 * MOTOR_TAPPED_HOLE_MM),
-            head="cap",
-            seat_mm=shell.z_end,
-            grip_mm=casing.plate_mm,
-            room_mm=_MOTOR_THREAD_MM,
-            direction=1.0,
-            material=steel,
-            holes=motor_holes(motor, MOTOR_TAPPED_HOLE_MM),
-            group=Group.HOUSING,
-            role=Role.STATOR_SCREW,
-            note="into the motor's base; left out where the journal's screws go there",
+        replace(
+            screw_part(
+                "stator_screw",
+                screw_for(base_holes.diameter_mm, 0.5 * base_holes.diameter_mm + 0.5 * MOTOR_TAPPED_HOLE_MM),
+                head="cap",
+                seat_mm=shell.z_end,
+                grip_mm=casing.plate_mm,
+                room_mm=_MOTOR_THREAD_MM,
+                direction=1.0,
+                material=steel,
+                holes=motor_holes(motor, MOTOR_TAPPED_HOLE_MM),
+                group=Group.HOUSING,
+                role=Role.STATOR_SCREW,
+                note="into the motor's base; left out where the journal's screws go there",
+            ),
+            at_assembly=_BY_HAND,
         ),
     )
 

@@ -334,8 +334,9 @@ def encoder_parts(z_shaft_mm: Numbers, z_back_mm: Numbers, bore_mm: Numbers, sha
             purchases=(
                 Purchase(kind="encoder", designation="RLS RM08, 12 bit", remark="output A, B, Z; supply of the driver"),
             ),
-            note=f"{_GAP_MM:g} mm from the magnet, within 0.5 mm",
-            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="encoder_cap", adhesive=EPOXY),
+            note=(gap := f"{_GAP_MM:g} mm from the magnet, within 0.5 mm"),
+            at_assembly=f"bond it so deep in its cap that it is {gap}, with the backplate on",
+            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="encoder_cap", adhesive=EPOXY, first=True),
         ),
         housing_part(
             name="encoder_cap",

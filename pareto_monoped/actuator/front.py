@@ -134,6 +134,7 @@ def _pins(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                 turned(pin, pin_front, -1.0, pressed=True),
             ),
             note=f"{_raceway(carrier.pin_diameter_mm, _PIN_ZONE)}; M3 tapped before hardening" if needles else "dowel",
+            at_assembly="into the carrier first; the secondary carrier is pushed onto their other ends when it comes",
             joint=Joint(kind=JointKind.PRESSED, how="pressed into secondary_carrier and", partner="carrier"),
             count=gears.planets,
             pitch_radius_mm=at.r_pins,
@@ -165,6 +166,8 @@ def _ring(at: Layout, settings: ActuatorSettings) -> Part:
         lengths=(narrower("face", at.z_gear_back, at.z_gear_front),),
         teeth=made(rated_teeth(gears.ring(), steel, settings, gears.planet(), centre_mm=at.r_pins)),
         note=gear_note(teeth, settings),
+        at_assembly="the planets on their carrier centre it: with the carrier in its bearings, turn it by hand some "
+        "turns before the adhesive sets",
         joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="ring_housing", adhesive=RETAINER),
     )
 
@@ -314,7 +317,9 @@ def carrier_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             0.0,
             Group.OUTPUT,
             "carries the sun's end in the carrier",
-            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="carrier", adhesive=BEARING_RETAINER),
+            joint=Joint(
+                kind=JointKind.BONDED, how="bonded into", partner="carrier", adhesive=BEARING_RETAINER, first=True
+            ),
         ),
         *_web_screws(at, settings),
     )

@@ -31,6 +31,7 @@ from pareto_monoped.actuator.front import carrier_parts, gear_parts
 from pareto_monoped.actuator.layout import (
     COUPLING_DOWEL,
     DOWEL_STANDS_OUT_MM,
+    NECK_SET,
     InternalLayout,
     Layout,
     frameless,
@@ -109,20 +110,23 @@ def _turning_parts(at: Layout, shell: InternalLayout, settings: ActuatorSettings
         _bell_dowel_holes(settings),
     )
     return (
-        sun_part(
-            at,
-            shell.neck,
-            settings,
-            spline,
-            shaft,
-            behind=(
-                *slab(shell.z_coupling, at.z_gear_back, shaft - depth),
-                *slab(z_hub, shell.z_coupling, spline),
-                *slab(z_hub - relief, z_hub, shaft - depth),
-                *shaft_end(shell.z_plate, z_hub - relief, shaft),
+        replace(
+            sun_part(
+                at,
+                shell.neck,
+                settings,
+                spline,
+                shaft,
+                behind=(
+                    *slab(shell.z_coupling, at.z_gear_back, shaft - depth),
+                    *slab(z_hub, shell.z_coupling, spline),
+                    *slab(z_hub - relief, z_hub, shaft - depth),
+                    *shaft_end(shell.z_plate, z_hub - relief, shaft),
+                ),
+                seat_mm=shaft,
+                rear=magnet_centre(shell.z_plate),
             ),
-            seat_mm=shaft,
-            rear=magnet_centre(shell.z_plate),
+            at_assembly=NECK_SET,
         ),
         coupling_part(
             (

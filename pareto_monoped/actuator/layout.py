@@ -180,6 +180,12 @@ NECK_NOTE = (
     f"bonded with its neck {NECK_PLAY_MM:g} +-{NECK_WITHIN_MM:g} mm from the end bearing, the carrier pushed towards "
     "the motor"
 )
+NECK_SET = (
+    "first without adhesive: push the carrier towards the motor and the sun against the end bearing, take them "
+    f"apart and measure how far the sun stands out of its coupling; bond it {NECK_PLAY_MM:g} +-"
+    f"{NECK_WITHIN_MM:g} mm deeper"
+)
+"""How that is set, since nobody sees the neck in the closed case."""
 COUPLING_DOWEL = Dowel(diameter_mm=2.5)
 """Between the coupling and what turns it; our own choice: they stand between screws of M3 or M4 on 22 mm."""
 DOWEL_STANDS_OUT_MM = 1.0

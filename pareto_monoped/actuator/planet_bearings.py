@@ -11,7 +11,7 @@ from pareto_monoped.actuator.needles import NeedleRows, needle_rows
 from pareto_monoped.actuator.settings import ActuatorSettings
 from pareto_monoped.geometry.making import Length
 from pareto_monoped.geometry.parts import Part
-from pareto_monoped.geometry.roles import GREASE, GREASE_G_PER_MM3, Group, Purchase, Role, Visibility
+from pareto_monoped.geometry.roles import GREASE, GREASE_G_PER_MM3, Group, Joint, JointKind, Purchase, Role, Visibility
 from pareto_monoped.geometry.shapes import Numbers
 
 _BUSH_LENGTHS_MM = (4.0, 6.0, 8.0, 10.0)
@@ -27,6 +27,8 @@ _SPACER_PLAY_MM = 0.2
 _LEAST_SPACER_MM = 0.75
 """Thinner spacers cannot be turned: one of twice the thickness stands at one end instead, and below that none, so that
 needles have half as much room to either side; our own choice."""
+_IN_PLANET = Joint(kind=JointKind.STUCK, how="stuck with grease into the bore of", partner="planet")
+"""Of loose needles: a planet comes with all of them, or they fall out."""
 Place = tuple[Numbers, Numbers, Numbers]
 
 
@@ -108,6 +110,9 @@ def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
             catalogue_mass_kg=rows.needles * one_kg * length,
             purchases=_ordered_needles(rows, data.diameter_mm),
             note="full complement, greased",
+            at_assembly=f"{rows.needles} loose rollers in each row: set them all into the grease before the planet "
+            "goes over its pin",
+            joint=_IN_PLANET,
             places_mm=needles,
         ),
         planet_part(
@@ -139,6 +144,7 @@ def _needle_parts(at: Layout, settings: ActuatorSettings) -> tuple[Part, ...]:
                 prisms=tube(0.0, spacer, 0.5 * bore - _SPACER_PLAY_MM, 0.5 * pin + _SPACER_PLAY_MM),
                 process="machined",
                 note="fills the planet's bore beside its needles",
+                joint=_IN_PLANET,
                 places_mm=spacers,
             )
         )

@@ -33,8 +33,10 @@ _PLAY_MM = 0.25  # of fits that turn or slide, on one side
 _NEAR_MM = 0.8  # a screw's shank is nearer than this to the parts that it goes through
 _DEPTH_MM = 0.2  # least height that a screw and what it goes through have in common
 _FAR_MM = 1000.0  # out of the robot
-_LASTING = frozenset({JointKind.MOULDED, JointKind.RUNNING})
-"""Joints that are never taken apart: what is cast onto a part, and a rotor in its supplier's bearings."""
+_LASTING = frozenset({JointKind.MOULDED, JointKind.RUNNING, JointKind.STUCK, JointKind.PRESSED})
+"""Joints that are never taken apart: what is cast onto a part, a rotor in its supplier's bearings, loose needles, which
+come with their planet, and what is pressed, which needs the part alone under a press. Bonds are, unless they say
+``Joint.first``: a ring is bonded around its planets, and a dowel where its holes have been reamed."""
 _FLEXIBLE = frozenset({JointKind.ENGAGED, JointKind.THREADED})
 """Joints of parts that do not come straight: a chain is laid around its sprocket, a turnbuckle is turned."""
 _LIMP = frozenset({Role.CHAIN, Role.TURNBUCKLE})  # parts of a chain drive, which are put together link by link
@@ -97,6 +99,14 @@ def bodies_of(placed: Sequence[Instance]) -> tuple[Body, ...]:
     return tuple(Body(unit=placed[k].unit, instances=members, instance=placed[k]) for k, members in first.items())
 
 
+def partners_of(bodies: Sequence[Body], body: int) -> list[int]:
+    """Return the bodies that a body's record names as its partner in a joint; none where it has no joint."""
+    joint = bodies[body].instance.part.joint
+    partners = [j for j, other in enumerate(bodies) if joint and other.instance.part.name == joint.partner]
+    # Both actuators have parts of one name; a chain's sprocket may be in another unit.
+    return [j for j in partners if bodies[j].unit == bodies[body].unit] or partners
+
+
 def blocking_of(placed: Sequence[Instance]) -> Blocking:
     """Look at all pairs of bodies of an assembly in ``retention.POSE``."""
     bodies = bodies_of(placed)
@@ -112,7 +122,7 @@ def blocking_of(placed: Sequence[Instance]) -> Blocking:
     return Blocking(
         bodies=bodies,
         along={"+y": forward, "-y": forward.T.copy()},
-        lasting=_joined(bodies, _LASTING),
+        lasting=_joined(bodies, _LASTING, first=True),
         tied=_grouped(threads(placed, pieces), owner, count),
         touching=view.touching(),
         key={k: view.in_the_way_of_key(k) for k in fasteners},
@@ -130,17 +140,17 @@ def _grouped(matrix: Bools, owner: NDArray[np.intp], count: int) -> Bools:
     return found
 
 
-def _joined(bodies: Sequence[Body], wanted: frozenset[JointKind]) -> Bools:
-    """Return true at (i, j) where one body's record names the other as its partner in a joint of one of the kinds."""
+def _joined(bodies: Sequence[Body], wanted: frozenset[JointKind], *, first: bool = False) -> Bools:
+    """Return true at (i, j) where one body's record names the other as its partner in a joint of one of the kinds.
+
+    ``first``: or in any joint that is made before both come to others.
+    """
     found = np.zeros((len(bodies), len(bodies)), dtype=bool)
     for i, body in enumerate(bodies):
         joint = body.instance.part.joint
-        if joint is None or joint.kind not in wanted:
-            continue
-        partners = [j for j, other in enumerate(bodies) if other.instance.part.name == joint.partner]
-        # Both actuators have parts of one name; a chain's sprocket may be in another unit.
-        near = [j for j in partners if bodies[j].unit == body.unit] or partners
-        found[i, near] = found[near, i] = True
+        if joint is not None and (joint.kind in wanted or (first and joint.first)):
+            partners = partners_of(bodies, i)
+            found[i, partners] = found[partners, i] = True
     return found
 
 

@@ -115,8 +115,15 @@ def dowel_part(
         # In a population the lengths differ; purchases are used only for single parts.
         purchases=() if np.ndim(length) else (_ordered(f"{dowel.diameter_mm:g} m6 x {float(length):g}"),),
         note=note,
+        at_assembly=_REAMED,
         joint=Joint(kind=JointKind.BONDED, how="pressed and bonded into", partner=partner, adhesive=RETAINER),
     )
+
+
+_REAMED = (
+    "the holes are reamed together first: join the parts without dowels, tighten their screws, ream through, clear "
+    "out the chips"
+)
 
 
 def _ordered(size: str) -> Purchase:

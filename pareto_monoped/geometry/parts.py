@@ -234,6 +234,9 @@ class Part:
     #: What is bought for one instance, and used up when it is put in; () for arrays
     purchases: tuple[Purchase, ...] = field(default=(), compare=False)
     note: str = field(default="", compare=False)  #: what else the maker should know
+    #: What to watch when it is put in: said in the step in which its joint is made, or it comes
+    at_assembly: str = field(default="", compare=False)
+    at_last: str = field(default="", compare=False)  #: what is done at it when all is together, before the first jump
     #: Alloy or steel grade with its condition, where the maker must keep to one
     grade: Alloy | GearGrade | None = field(default=None, compare=False)
     fits: tuple[Fit, ...] = field(default=(), compare=False)  #: tolerances of its round faces

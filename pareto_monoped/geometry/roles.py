@@ -67,6 +67,7 @@ class JointKind(StrEnum):
     BONDED = "bonded"
     THREADED = "threaded"
     MOULDED = "moulded"
+    STUCK = "stuck"  # loose needles with grease in their bore
     ENGAGED = "engaged"  # a chain on the teeth of its sprocket
     RUNNING = "running"  # a rotor in bearings that its supplier built in
 
@@ -141,6 +142,7 @@ class Joint:
     how: str  #: the joint in words, without the partner, such as ``pressed onto``
     partner: str  #: name of the part of the same unit that holds
     adhesive: Purchase | None = None  #: where it is bonded
+    first: bool = False  #: whether a bond is made before both come to any other part; what is pressed always is
 
     @property
     def text(self) -> str:

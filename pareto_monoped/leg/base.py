@@ -155,9 +155,21 @@ def _far_cheek(z0_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
         ),
         replace(
             bearing_part("base_bearing", d, z0_mm=z0_mm),
-            joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="base_far_cheek", adhesive=BEARING_RETAINER),
+            joint=Joint(
+                kind=JointKind.BONDED,
+                how="bonded into",
+                partner="base_far_cheek",
+                adhesive=BEARING_RETAINER,
+                first=True,
+            ),
         ),
     )
+
+
+_SWUNG = (
+    "swing the thigh through its whole range; once it swings freely, take off the knee driver, which covers two of "
+    "these screws, tighten them and put it back"
+)
 
 
 def _rods(far_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
@@ -182,21 +194,30 @@ def _rods(far_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
             "rods",
         ),
         *(
-            screw_part(
-                f"base_{row}_rod_screw_{side}",
-                M4,
-                visibility=Visibility.OUTSIDE,
-                head="cap",
-                seat_mm=seat_mm - direction * under_mm,
-                grip_mm=grip_mm + under_mm,
-                room_mm=ROD_THREAD,
-                direction=direction,
-                places_mm=where,
-                note="; ".join(filter(None, (note, last))),
+            replace(
+                screw_part(
+                    f"base_{row}_rod_screw_{side}",
+                    M4,
+                    visibility=Visibility.OUTSIDE,
+                    head="cap",
+                    seat_mm=seat_mm - direction * under_mm,
+                    grip_mm=grip_mm + under_mm,
+                    room_mm=ROD_THREAD,
+                    direction=direction,
+                    places_mm=where,
+                    note="; ".join(filter(None, (note, last))),
+                ),
+                at_last=_SWUNG if last else "",
             )
             for side, seat_mm, grip_mm, direction, last in (
                 ("near", d.hip_mount_mm, d.cheek_mm, 1.0, ""),
-                ("far", far_mm + d.far_cheek_mm, d.far_cheek_mm, -1.0, "tighten last, once the thigh has swung freely"),
+                (
+                    "far",
+                    far_mm + d.far_cheek_mm,
+                    d.far_cheek_mm,
+                    -1.0,
+                    "by hand only, until the thigh has swung freely",
+                ),
             )
             for row, where, under_mm, note in (
                 ("lower", lower, 0.0, ""),

@@ -164,6 +164,8 @@ def _fastened(
                     remark="from spare links of the same chain; riveted into the fork",
                 ),
             ),
+            at_assembly="rivet its pin through the chain's last link with a block of steel held against its other "
+            "head, so that no blow reaches plates or sprockets; the link must still turn",
             note=f"fork, its slot {d.chain.inner_link_mm + 2.0 * _SLOT_PLAY:g} +0.1 / 0, with {hand} stud "
             f"{thread.text}, {TRAVEL + _NUT + _SPARE + _STUD_DEPTH:g} mm long without undercut, run-out "
             f"before the fork {_RUN_OUT:g} mm at most: keep the nut clear of it at the short end of the travel; drawn "

@@ -99,18 +99,31 @@ def journal_parts(
             features=(turned(d.bearing_bore_radius_mm, seat + d.bearing_width_mm + _BEHIND, -1.0),),
             note="the bore takes the knee actuator's cables",
         ),
-        screw_part(
-            "journal_screw",
-            screw,
-            head="cap",
-            seat_mm=flange,
-            grip_mm=_FLANGE + back_clearance_mm,
-            room_mm=_THREAD,
-            direction=-1.0,
-            holes=holes,
-            note=_screwed_into(back_clearance_mm),
+        replace(
+            screw_part(
+                "journal_screw",
+                screw,
+                head="cap",
+                seat_mm=flange,
+                grip_mm=_FLANGE + back_clearance_mm,
+                room_mm=_THREAD,
+                direction=-1.0,
+                holes=holes,
+                note=_screwed_into(back_clearance_mm),
+            ),
+            at_assembly=f"{'' if np.ndim(back_clearance_mm) or not back_clearance_mm else _EXCHANGED}{_SET}",
         ),
     )
+
+
+_EXCHANGED = (
+    "lay the leg down with the knee motor's back downwards, so that the motor rests in its place, and take out the "
+    "screws that have held it, whose heads are under the flange; "
+)
+_SET = (
+    "by hand first; hold the base and swing the thigh, with a dial gauge on the journal's seat; tap the journal until "
+    f"it runs within {_RUN_OUT:g} mm, then tighten"
+)
 
 
 def _screwed_into(back_clearance_mm: Numbers) -> str:

@@ -160,6 +160,8 @@ def _spacer(d: LegDimensions) -> Part:
         prisms=(disc(SHOULDER_RADIUS, 0.0, half_gap - half_thigh_gap, Circle(radius_mm=d.bearing_bore_radius_mm)),),
         places_mm=((0.0, 0.0, half_thigh_gap), (0.0, 0.0, -half_gap)),
         registers=(Fit(diameter_mm=2.0 * d.bearing_bore_radius_mm, zone="F7"),),
+        at_assembly="measured and ground before it goes in: with bearings, it must stand 0.02 to 0.05 mm out over the "
+        "axle's end at its side",
         note=f"clamps the bearing's inner ring; made {_TO_GRIND:g} mm longer than drawn, then both ground until "
         "spacers and bearings together stand 0.02 to 0.05 mm out over the axle's ends",
     )

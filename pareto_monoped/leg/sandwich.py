@@ -140,6 +140,7 @@ def sleeve_bolt(
             ),
         ),
         note=f"flush, {stack:g} mm together",
+        at_assembly="" if plate_on_core_mm is None else "while the epoxy between the core and both plates is wet",
     )
 
 
@@ -196,6 +197,8 @@ def core_part(
         lengths=(Length(name="thickness", z0_mm=-0.5 * gap_mm, z1_mm=0.5 * gap_mm, lower_mm=0.0, upper_mm=_CORE_MORE),),
         purchases=(EPOXY,),
         note="print lying on a plate side, solid; bond to both plates with epoxy, so that they cannot buckle",
+        at_assembly="bond it to the plate that it meets now, and to the other one when that comes: epoxy on its whole "
+        "faces, just before the bolts are driven",
     )
 
 

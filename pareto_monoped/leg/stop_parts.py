@@ -65,7 +65,9 @@ def _bumper(name: str, stop: JointStop, seat: Face, partner: str) -> Part:
                 remark=f"cut to {bumper.length_mm:g} mm",
             ),
         ),
-        joint=Joint(kind=JointKind.BONDED, how="bonded to the floor of", partner=partner, adhesive=RUBBER_GLUE),
+        joint=Joint(
+            kind=JointKind.BONDED, how="bonded to the floor of", partner=partner, adhesive=RUBBER_GLUE, first=True
+        ),
     )
 
 

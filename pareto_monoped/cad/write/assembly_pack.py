@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pareto_monoped.cad.assembly import Instance, instances
-from pareto_monoped.cad.bodies import Blocking, blocking_of
+from pareto_monoped.cad.bodies import Blocking, blocking_of, partners_of
 from pareto_monoped.cad.cables import cables
 from pareto_monoped.cad.check.retention import POSE
 from pareto_monoped.cad.picture.drawing import png
@@ -41,7 +41,13 @@ _FROM = {
     "+z": "from above",
     "-z": "from below",
 }
-_VERB = {JointKind.PRESSED: "Press", JointKind.BONDED: "Bond", JointKind.MOULDED: "Mould", JointKind.ENGAGED: "Lay"}
+_VERB = {
+    JointKind.PRESSED: "Press",
+    JointKind.BONDED: "Bond",
+    JointKind.THREADED: "Screw",
+    JointKind.STUCK: "Stick",
+    JointKind.ENGAGED: "Lay",
+}  # moulding has a section of its own, and a rotor comes in its bearings
 _TAILS = "80 mm for the splice inside the motor's back and 60 mm for the terminals"
 _SLACK = 0.01
 """Sideways play of the chain's slack strand over its free length: half of what chain makers allow for level drives,
@@ -135,7 +141,8 @@ def _page(
     )
     yield "<h2>Steps</h2>"
     for step in steps:
-        yield from _step(step, blocking)
+        yield from _step(step, blocking, product)
+    yield from _before_the_first_jump(product)
     yield (
         "<h2>Screws</h2><p>Clean the threads, wet them with the locker, tighten crosswise. Countersunk heads carry 80 "
         "percent of their threads (ISO 10642, ISO 14581; marked 08.8 and 010.9), so that they are tightened to 75 "
@@ -157,20 +164,25 @@ def _page(
     yield "</html>"
 
 
-def _step(step: Step, blocking: Blocking) -> Iterator[str]:
+def _step(step: Step, blocking: Blocking, product: Listed) -> Iterator[str]:
     yield f"<section><h3>{step.number}. {escape(titled(step, blocking))}</h3><ol>"
     if step.base_number is None:
         yield f"<li>Take {_listed(sorted(step.base), blocking)}.</li>"
     elif step.base_number != step.number - 1:
         yield f"<li>Take what step {step.base_number} has made.</li>"
-    yield from (f"<li>{_addition(addition, blocking)}</li>" for addition in step.additions)
-    yield from (f"<li>{line}</li>" for line in (*_bonded(step, blocking), *_greased(step, blocking)))
+    yield from (f"<li>{_addition(addition, step, blocking)}</li>" for addition in step.additions)
+    yield from (f"<li>{line}</li>" for line in (*_joined(step, blocking), *_greased(step, blocking)))
+    watched = [k for k in sorted(step.members) if blocking.bodies[k].instance.part.at_assembly]
+    for k in (k for k in watched if _is_put_in(k, step, blocking)):
+        text = blocking.bodies[k].instance.part.at_assembly
+        yield f"<li>{escape(_counted(k, blocking))}: {escape(text)}.</li>"
+    yield from (f"<li>{line}</li>" for line in _held_for_now(step, blocking, product))
     for k in step.fasteners:
         yield f"<li>{_fastener(k, blocking)}</li>"
     yield f"</ol><img src='step_{step.number:02d}.png' alt='step {step.number}' loading='lazy'></section>"
 
 
-def _addition(addition: Addition, blocking: Blocking) -> str:
+def _addition(addition: Addition, step: Step, blocking: Blocking) -> str:
     way = _FROM[addition.out]
     if addition.number is not None:
         return f"Bring what step {addition.number} has made {way}."
@@ -178,10 +190,12 @@ def _addition(addition: Addition, blocking: Blocking) -> str:
     if len(members) > 1:
         return f"Put together {_listed(members, blocking)}, and bring them {way}."
     joint = blocking.bodies[members[0]].instance.part.joint
+    if joint is None or step.members.isdisjoint(partners_of(blocking.bodies, members[0])):
+        # Its joint, if it has one, is made in the step in which its partner comes.
+        return f"Put {_listed(members, blocking)} in place {way}."
     several = len(blocking.bodies[members[0]].instances) > 1
-    how = f" {'They are' if several else 'It is'} {escape(joint.text.replace('_', ' '))}." if joint is not None else ""
-    verb = "Put" if joint is None else _VERB.get(joint.kind, "Put")
-    return f"{verb} {_listed(members, blocking)} in place {way}.{how}"
+    how = f"{'They are' if several else 'It is'} {escape(joint.text.replace('_', ' '))}."
+    return f"{_VERB.get(joint.kind, 'Put')} {_listed(members, blocking)} in place {way}. {how}"
 
 
 def _made_before(step: Step) -> list[frozenset[int]]:
@@ -190,19 +204,24 @@ def _made_before(step: Step) -> list[frozenset[int]]:
     return made if step.base_number is None else [step.base, *made]
 
 
-def _bonded(step: Step, blocking: Blocking) -> Iterator[str]:
-    """Yield the bonds between what a step brings together; the bond of a single part stands in that part's own line."""
+def _is_put_in(body: int, step: Step, blocking: Blocking) -> bool:
+    """Return whether a step makes a body's joint with its partner, or brings the body if it has none."""
+    joint = blocking.bodies[body].instance.part.joint
+    if joint is None or joint.kind not in _VERB:
+        return not any(body in made for made in _made_before(step))
+    partners = step.members.intersection(partners_of(blocking.bodies, body))
+    return bool(partners) and not any(body in made and partners & made for made in _made_before(step))
+
+
+def _joined(step: Step, blocking: Blocking) -> Iterator[str]:
+    """Yield the joints between what a step brings together; that of a single part stands in that part's own line."""
     alone = {k for one in step.additions if one.number is None and len(one.members) == 1 for k in one.members}
     for k in sorted(step.members - alone):
-        body = blocking.bodies[k]
-        joint = body.instance.part.joint
-        if joint is None or joint.adhesive is None:
-            continue
-        others = ((m, blocking.bodies[m]) for m in step.members)
-        partners = {m for m, other in others if (other.unit, other.instance.part.name) == (body.unit, joint.partner)}
-        if partners and not any(k in made and partners & made for made in _made_before(step)):
-            verb = "are" if len(body.instances) > 1 else "is"
-            yield f"Bond what comes together: {_counted(k, blocking)} {verb} {escape(joint.text.replace('_', ' '))}."
+        joint = blocking.bodies[k].instance.part.joint
+        if joint is not None and joint.kind in _VERB and _is_put_in(k, step, blocking):
+            verb = "are" if len(blocking.bodies[k].instances) > 1 else "is"
+            how = escape(joint.text.replace("_", " "))
+            yield f"{_VERB[joint.kind]} what comes together: {_counted(k, blocking)} {verb} {how}."
 
 
 def _greased(step: Step, blocking: Blocking) -> Iterator[str]:
@@ -215,6 +234,24 @@ def _greased(step: Step, blocking: Blocking) -> Iterator[str]:
                 found.setdefault(order.designation, []).append(f"{_counted(k, blocking)}, {order.count:.2f} g{each}")
     for designation, places in found.items():
         yield escape(f"Grease with {designation}: {'; '.join(places)}.")
+
+
+def _held_for_now(step: Step, blocking: Blocking, product: Listed) -> Iterator[str]:
+    """Yield what holds a motor until another unit's screws do: the actuator's own, which are left out of the robot."""
+    actuators = {"hip_actuator": product.robot.hip, "knee_actuator": product.robot.knee}
+    for k, body in enumerate(blocking.bodies):
+        if body.instance.part.role is not Role.MOTOR_STATOR or k not in step.members:
+            continue
+        screws = [part for part in actuators[body.unit].parts if part.role is Role.STATOR_SCREW]
+        others = [j for j, through in blocking.goes_through.items() if k in through and j not in step.fasteners]
+        for j in (j for j in others if screws and blocking.bodies[j].unit != body.unit):
+            held = {m for m in blocking.goes_through[j] if blocking.bodies[m].unit == body.unit}
+            if held <= step.members and not any(held <= made for made in _made_before(step)):
+                spare = escape(f"{float(screws[0].count):g} x {screws[0].purchases[0].designation}")
+                yield (
+                    f"Hold {_listed(sorted(held), blocking)} together with {spare}, which are not counted in the parts "
+                    f"to buy, until the {_name(blocking, j)}s take their place: {screws[0].at_assembly}."
+                )
 
 
 def _fastener(body: int, blocking: Blocking) -> str:
@@ -233,6 +270,18 @@ def _listed(members: Sequence[int], blocking: Blocking) -> str:
 def _counted(body: int, blocking: Blocking) -> str:
     count = len(blocking.bodies[body].instances)
     return f"{count} x {_name(blocking, body)}" if count > 1 else _name(blocking, body)
+
+
+def _before_the_first_jump(product: Listed) -> Iterator[str]:
+    """Yield what is done when everything is together, each once for all its parts, with the torque of screws."""
+    last: dict[str, list[str]] = {}
+    for part in (unique.part for unique in product.unique if unique.part.at_last):
+        torque = f" ({tightening(part)[0]})" if part.role in FASTENERS else ""
+        last.setdefault(part.at_last, []).append(part.name.replace("_", " ") + torque)
+    yield "<h2>Before the first jump</h2><ol>"
+    for text, names in last.items():
+        yield f"<li>{escape(text[0].upper() + text[1:])}: {escape(', '.join(names))}.</li>"
+    yield "</ol>"
 
 
 def _screws(product: Listed) -> Iterator[tuple[str, ...]]:

@@ -8,13 +8,13 @@ import pytest
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.cad.as_built import as_built
 from pareto_monoped.cad.assembly import Instance, instances
-from pareto_monoped.cad.bodies import KEY_REACH_MM, blocking_of
+from pareto_monoped.cad.bodies import KEY_REACH_MM, blocking_of, partners_of
 from pareto_monoped.cad.check.retention import POSE
 from pareto_monoped.cad.shape.meshes import mesh_of, placed
 from pareto_monoped.cad.steps import Joined, Whole, steps_of, stuck, take_apart
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.geometry.parts import Part, Prism
-from pareto_monoped.geometry.roles import FASTENERS, Role
+from pareto_monoped.geometry.roles import FASTENERS, JointKind, Role
 from pareto_monoped.geometry.screws import M3, screw_part
 from pareto_monoped.geometry.shapes import Circle
 from pareto_monoped.materials import MATERIALS
@@ -195,6 +195,23 @@ def test_every_part_of_a_robot_is_put_in_its_place_once(planned):
     assert sorted(single) == list(range(len(blocking.bodies)))
     assert sorted(k for body in blocking.bodies for k in body.instances) == list(range(len(found)))
     assert steps[-1].members == frozenset(range(len(blocking.bodies)))
+
+
+@pytest.mark.parametrize("kind", [JointKind.STUCK, JointKind.PRESSED, JointKind.BONDED])
+def test_what_is_stuck_or_pressed_into_a_part_comes_with_it(planned, kind):
+    """Loose needles would fall out of a planet that comes later; a bearing's cup needs a press. So do some bonds."""
+    _, blocking, assembly = planned
+    joints = [(k, body.instance.part.joint) for k, body in enumerate(blocking.bodies)]
+    pairs = [
+        (k, partner)
+        for k, joint in joints
+        if joint and joint.kind is kind and (joint.first or kind is not JointKind.BONDED)
+        for partner in partners_of(blocking.bodies, k)
+    ]
+    assert len(pairs) >= 2
+    for step in steps_of(assembly):
+        for k, partner in pairs:
+            assert (k in step.members) == (partner in step.members), blocking.bodies[k].instance.name
 
 
 @pytest.mark.parametrize(

@@ -3,20 +3,23 @@
 import csv
 import io
 import re
+from html import escape
 
 import manifold3d as m3
 import numpy as np
 import pytest
 import trimesh
 
+from pareto_monoped.actuator.search import map_for
+from pareto_monoped.cad.as_built import as_built
 from pareto_monoped.cad.assembly import Pose, instances
-from pareto_monoped.cad.product import ListedPart, part_file_name
+from pareto_monoped.cad.product import Listed, ListedPart, part_file_name
 from pareto_monoped.cad.shape.meshes import flaws
 from pareto_monoped.cad.shape.outlines import contours, polygon
-from pareto_monoped.cad.write import meshes
+from pareto_monoped.cad.write import assembly_pack, meshes
 from pareto_monoped.cad.write.assembly_pack import COLLAR_MM, foot_mould
-from pareto_monoped.design import Design
-from pareto_monoped.geometry.roles import FASTENERS, Role
+from pareto_monoped.design import PAPER_CASES, Design
+from pareto_monoped.geometry.roles import FASTENERS, JointKind, Role
 from pareto_monoped.robot.build import build_robot
 
 
@@ -38,6 +41,16 @@ def listed(exported, actuator_map):
         units, part = tuple(dict.fromkeys(one.unit for one in members)), members[0].part
         found.append(ListedPart(name=part_file_name(units, part.name), part=part, count=len(members), units=units))
     return found
+
+
+@pytest.fixture(scope="module")
+def listed_framed():
+    """A robot whose two motors are framed."""
+    found = map_for("MN8014", "iso6336")
+    robot = build_robot(as_built(PAPER_CASES["C"].design, found), found)
+    unique = {id(part): (unit.name, part) for unit in robot.units for part in unit.parts}
+    rows = [ListedPart(name=f"{unit}_{part.name}", part=part, count=1, units=(unit,)) for unit, part in unique.values()]
+    return Listed(robot=robot, unique=tuple(rows))
 
 
 def rows_of(pack):
@@ -72,6 +85,100 @@ def test_the_steps_name_every_adhesive_and_grease_where_its_part_is_put_in(pack,
     # A bond is made when the second of its parts comes, although the first stands in an earlier line or step.
     together = [line for line in lines if line.startswith("Bond what comes together: ")]
     assert any("ring is bonded into ring housing" in line for line in together)
+
+
+def sections(pack):
+    """The lines of each step."""
+    page = pack["assembly/index.html"].decode()
+    page = page[: page.index("<h2>Screws</h2>")]
+    return [re.findall(r"<li>(.*?)</li>", one) for one in page.split("<section>")[1:]]
+
+
+def test_each_joint_is_made_once_and_not_before_its_partner_is_there(pack, listed):
+    """A ring is not said to be bonded into a housing that comes later, nor a nut to be on such a stud."""
+    steps, places = sections(pack), {}
+    for part, count in ((u.part, len(u.units)) for u in listed):
+        if part.joint is not None and part.joint.kind not in (JointKind.MOULDED, JointKind.RUNNING):
+            key = tuple(text.replace("_", " ") for text in (part.name, part.joint.text, part.joint.partner))
+            places[key] = places.get(key, 0) + count
+    assert len(places) > 15
+    for (name, said, partner), count in places.items():
+        line = re.compile(rf"\b{name} (in place [a-z ]+\. (It|They) )?(is|are) {re.escape(said)}\.")
+        made = [k for k, lines in enumerate(steps) if any(map(line.search, lines))]
+        assert len(made) == count, (name, said)
+        named = re.compile(rf"\b{partner}\b.*(\.|, | and )")
+        there = [k for k, lines in enumerate(steps) for one in lines if named.search(one.split(said)[0])]
+        assert min(there) <= min(made), (name, said)
+
+
+def test_what_to_watch_stands_in_the_step_in_which_a_part_is_put_in(pack, listed):
+    """That dowels' holes are reamed together first, say: where the dowels are bonded, once in each unit."""
+    steps, looked_at = sections(pack), 0
+    for part in (u.part for u in listed if u.part.at_assembly):
+        name, joint = part.name.replace("_", " "), part.joint.text.replace("_", " ") if part.joint else ""
+        watched = re.compile(rf"(\d+ x )?{name}: {re.escape(escape(part.at_assembly))}\.")
+        said = [k for k, lines in enumerate(steps) if any(map(watched.fullmatch, lines))]
+        units = {
+            unit
+            for u in listed
+            if u.part.name == part.name and u.part.at_assembly == part.at_assembly
+            for unit in u.units
+        }
+        assert len(said) >= len(units), name
+        put_in = [
+            k for k, lines in enumerate(steps) for line in lines if re.search(rf"\b{name}\b", line) and joint in line
+        ]
+        assert set(said) <= set(put_in), name
+        looked_at += part.role is Role.PIN and "reamed together first" in part.at_assembly
+    assert looked_at >= 7
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("thigh core", "epoxy on its whole faces"),
+        ("shank core", "epoxy on its whole faces"),
+        ("sun", "bond it 0.2 +-0.1 mm deeper"),
+        ("encoder", "1 mm from the magnet, within 0.5 mm"),
+        ("ring", "the planets on their carrier centre it"),
+        ("2 x turnbuckle end hip", "steel held against its other head"),
+        ("knee spacer", "ground before it goes in"),
+    ],
+)
+def test_a_step_says_what_is_set_glued_or_ground_in_it(pack, name, said):
+    assert any(line.startswith(f"{name}: ") and said in line for lines in sections(pack) for line in lines)
+
+
+def test_screws_that_close_the_chain_of_bearings_are_tightened_at_the_end(pack):
+    page = pack["assembly/index.html"].decode()
+    last = page[page.index("<h2>Before the first jump</h2>") : page.index("<h2>Screws</h2>")]
+    (line,) = re.findall(r"<li>(.*?)</li>", last)
+    assert line.startswith("Swing the thigh through its whole range; once it swings freely, take off the knee driver, ")
+    assert re.findall(r"base \w+ rod screw far \(\d\.\d N m\)", line) != []
+    driven = [line for lines in sections(pack) for line in lines if "rod screw far, " in line]
+    assert len(driven) == 2
+    assert all("by hand only, until the thigh has swung freely" in line for line in driven)
+
+
+def test_a_motor_whose_screws_come_late_is_held_until_then(listed_framed, monkeypatch):
+    """Its base is centred by the sun alone, so that no screw in it is tightened before the sun has turned."""
+    for name in ("step_picture", "stage_of", "png"):
+        monkeypatch.setattr(assembly_pack, name, lambda *_: b"")
+    steps = sections(assembly_pack.assembly_pack(listed_framed))
+    lines = [(k, line) for k, lines in enumerate(steps) for line in lines]
+    ((held, text),) = (
+        (k, line) for k, line in lines if line.startswith("Hold backplate and motor stator together with ")
+    )
+    assert "4 x cap screw ISO 4762 - M4 x 8 - 8.8" in text
+    assert "finger-tight now" in text
+    ((late, exchanged),) = ((k, line) for k, line in lines if line.startswith("4 x journal screw: "))
+    assert "take out the screws that have held it" in exchanged
+    assert late > held
+    (own,) = (k for k, line in lines if line.startswith("4 x stator screw: finger-tight now"))
+    turned = [k for k, line in lines if line.startswith("sun: ") and "tighten the screws in its base" in line]
+    assert len(turned) == 2
+    assert turned[0] > held
+    assert turned[1] > own
 
 
 def test_every_screw_has_a_torque_and_a_lock(pack, listed):
