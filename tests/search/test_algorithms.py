@@ -206,6 +206,19 @@ def test_the_first_weighted_designs_gather_around_the_papers_start_vector():
     assert np.std((values[:, 0] - 0.4) / 0.2) == pytest.approx(0.1, rel=0.05)
 
 
+def test_random_search_that_goes_on_asks_for_no_design_of_the_history():
+    """Its generator alone would draw the same designs again in a space of few."""
+    from pareto_monoped.definition.algorithms import RandomSettings
+    from pareto_monoped.search.algorithm import Space
+    from pareto_monoped.search.random_search import RandomSearch
+
+    space = Space(names=("a", "b"), lower=np.zeros(2), upper=np.ones(2))
+    first, second = (RandomSearch(space, RandomSettings(name="random", population=8), 3) for _ in range(2))
+    state, drawn = first.state(), first.ask().values
+    second.restore(state, [(drawn[:3], None), (drawn[3:], None)])
+    assert not {tuple(row) for row in second.ask().values} & {tuple(row) for row in drawn}
+
+
 def test_the_weighted_cost_is_the_papers():
     from pareto_monoped.definition.algorithms import WeightedSettings
     from pareto_monoped.search.algorithm import Space

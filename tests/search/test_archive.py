@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from pareto_monoped.search.archive import _posts, shortfall
+from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
+from pareto_monoped.search.algorithm import Scores, Space
+from pareto_monoped.search.archive import Archive, _posts, shortfall
 from pareto_monoped.search.prediction import _in_turns
 
 
@@ -55,3 +57,13 @@ def test_each_part_has_its_turn(count):
         wanted += sorted(rows[turn] for rows in left.values() if turn < len(rows))
         turn += 1
     assert _in_turns(parts).tolist() == wanted
+
+
+def test_costs_are_logarithms_by_the_range_of_what_is_feasible():
+    """Failed and infeasible designs, however small their energy, do not make the scale of the others."""
+    archive = Archive(Space(names=("a",), lower=np.zeros(1), upper=np.ones(1)))
+    energies, violation = np.array([30.0, 1e-9, 60.0, 90.0]), np.array([0.0, 2.0, 0.0, 0.0])
+    values = np.column_stack(([0.8, 0.9, 1.0, 1.1], energies))
+    scores = Scores(objectives=HEIGHT_AND_ENERGY, values=values, violation=violation, constraints=violation[:, None])
+    archive.add(np.array([[0.1], [0.2], [0.3], [0.4]]), scores)
+    np.testing.assert_allclose(archive.standing().costs[:, 1], np.log(energies))

@@ -139,6 +139,17 @@ def test_an_own_algorithm_for_a_study_of_the_package_is_refused(tmp_path):
         pm.resume(stored.path, evaluations=40, algorithm=Climber)
 
 
+def test_one_that_ends_before_the_stored_trials_is_refused_in_one_line(whole, tmp_path):
+    class Short(Climber):
+        def ask(self):
+            return super().ask() if self.asked is None else None
+
+    Short.__name__ = "Climber"
+    db = shutil.copy(whole.path, tmp_path / "whole.db")
+    with pytest.raises(StudyError, match="asks for other designs in generation 1"):
+        pm.resume(db, evaluations=70, algorithm=Short)
+
+
 def test_it_may_end_by_itself(tmp_path):
     class Once(Climber):
         def ask(self):
