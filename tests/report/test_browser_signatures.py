@@ -29,7 +29,8 @@ from pareto_monoped.uncertainty.statistics import Robustness, Spread
 from tests.records import compare, signature
 from tests.report.conftest import SETTINGS
 
-pytestmark = pytest.mark.browser
+# Where pixels fall differs between versions of Chromium and its fonts, and the walk takes a minute of processor time.
+pytestmark = [pytest.mark.browser, pytest.mark.long]
 
 HERE = Path(__file__).parent
 ASSETS = resources.files("pareto_monoped") / "report" / "assets"
