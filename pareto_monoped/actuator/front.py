@@ -166,8 +166,8 @@ def _ring(at: Layout, settings: ActuatorSettings) -> Part:
         lengths=(narrower("face", at.z_gear_back, at.z_gear_front),),
         teeth=made(rated_teeth(gears.ring(), steel, settings, gears.planet(), centre_mm=at.r_pins)),
         note=gear_note(teeth, settings),
-        at_assembly="the planets on their carrier centre it: with the carrier in its bearings, turn it by hand some "
-        "turns before the adhesive sets",
+        at_assembly="bonded when the carrier comes, once the dowels are in: the planets centre it; with the "
+        "carrier in its bearings, turn it by hand some turns before the adhesive sets",
         joint=Joint(kind=JointKind.BONDED, how="bonded into", partner="ring_housing", adhesive=RETAINER),
     )
 

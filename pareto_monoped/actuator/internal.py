@@ -333,6 +333,7 @@ def _motor_parts(at: Layout, shell: InternalLayout, motor: Motor, settings: Actu
             catalogue_price_eur=motor.price_share_eur(1.0 - rotor_share),
             purchases=(motor_order(motor, "frameless"),),
             note="stator",
+            at_assembly="the rotor's magnets pull it in: guide it along three rods in screw holes, fingers clear",
             joint=Joint(kind=JointKind.BONDED, how="bonded onto", partner="ring_housing", adhesive=RETAINER),
         ),
         rotor_part(

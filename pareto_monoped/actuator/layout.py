@@ -181,8 +181,8 @@ NECK_NOTE = (
     "the motor"
 )
 NECK_SET = (
-    "first without adhesive: push the carrier towards the motor and the sun against the end bearing, take them "
-    f"apart and measure how far the sun stands out of its coupling; bond it {NECK_PLAY_MM:g} +-"
+    "before its bond, try the case together dry: push the carrier towards the motor and the sun against the end "
+    f"bearing, take them apart and measure how far the sun stands out of its coupling; bond it {NECK_PLAY_MM:g} +-"
     f"{NECK_WITHIN_MM:g} mm deeper"
 )
 """How that is set, since nobody sees the neck in the closed case."""

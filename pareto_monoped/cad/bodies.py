@@ -117,12 +117,14 @@ def blocking_of(placed: Sequence[Instance]) -> Blocking:
         owner[list(body.instances)] = k
     limp = np.array([body.instance.part.role in _LIMP for body in bodies])
     flexible = _joined(bodies, _FLEXIBLE) | (limp[:, None] & limp[None])
+    # A nut is on its stud before the bar is, and both forks go into the bar by equal turns: none comes later.
+    turned = np.array([body.instance.part.role is Role.TURNBUCKLE for body in bodies])
     forward = view.along() & ~flexible & ~np.eye(count, dtype=bool)
     fasteners = [k for k, body in enumerate(bodies) if body.is_fastener]
     return Blocking(
         bodies=bodies,
         along={"+y": forward, "-y": forward.T.copy()},
-        lasting=_joined(bodies, _LASTING, first=True),
+        lasting=_joined(bodies, _LASTING, first=True) | (turned[:, None] & turned[None]),
         tied=_grouped(threads(placed, pieces), owner, count),
         touching=view.touching(),
         key={k: view.in_the_way_of_key(k) for k in fasteners},

@@ -115,15 +115,13 @@ def dowel_part(
         # In a population the lengths differ; purchases are used only for single parts.
         purchases=() if np.ndim(length) else (_ordered(f"{dowel.diameter_mm:g} m6 x {float(length):g}"),),
         note=note,
-        at_assembly=_REAMED,
+        at_assembly=REAMED,
         joint=Joint(kind=JointKind.BONDED, how="pressed and bonded into", partner=partner, adhesive=RETAINER),
     )
 
 
-_REAMED = (
-    "the holes are reamed together first: join the parts without dowels, tighten their screws, ream through, clear "
-    "out the chips"
-)
+REAMED = "into holes that were reamed together before the first step"
+"""What is said where dowels are put in: the parts are closed and greased by then, and no chip may fall into them."""
 
 
 def _ordered(size: str) -> Purchase:

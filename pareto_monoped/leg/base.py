@@ -168,7 +168,7 @@ def _far_cheek(z0_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
 
 _SWUNG = (
     "swing the thigh through its whole range; once it swings freely, take off the knee driver, which covers two of "
-    "these screws, tighten them and put it back"
+    "these screws, tighten them with thread locker and put it back"
 )
 
 
@@ -216,7 +216,7 @@ def _rods(far_mm: Numbers, d: LegDimensions) -> tuple[Part, ...]:
                     far_mm + d.far_cheek_mm,
                     d.far_cheek_mm,
                     -1.0,
-                    "by hand only, until the thigh has swung freely",
+                    "by hand only and dry, until the thigh has swung freely",
                 ),
             )
             for row, where, under_mm, note in (

@@ -119,6 +119,7 @@ def _turnbuckles(pins_mm: Numbers, places: tuple[_Place, ...], d: LegDimensions)
             prisms=_bar(half_bar),
             places_mm=places,
             joint=Joint(kind=JointKind.THREADED, how="threaded onto", partner="turnbuckle_end_hip"),
+            at_assembly="each nut onto the stud of its fork first, then both forks into the bar by equal turns",
             note=f"{BAR_WIDTH:g} mm square{cut}, milled to {BAR_FLAT:g} mm between the ends; tapped "
             f"{THREAD.thread.text} at one end and {_left(THREAD.thread).text} at the other, {_THREADED:g} mm deep at "
             f"least with a bottoming tap, drill {2.0 * THREAD.core:g} mm, {_TAPPED:g} mm deep, whose point may come "
@@ -164,8 +165,8 @@ def _fastened(
                     remark="from spare links of the same chain; riveted into the fork",
                 ),
             ),
-            at_assembly="rivet its pin through the chain's last link with a block of steel held against its other "
-            "head, so that no blow reaches plates or sprockets; the link must still turn",
+            at_assembly="once its chain is there, rivet its pin through the chain's last link with a block of "
+            "steel held against its other head, so that no blow reaches plates or sprockets; the link must still turn",
             note=f"fork, its slot {d.chain.inner_link_mm + 2.0 * _SLOT_PLAY:g} +0.1 / 0, with {hand} stud "
             f"{thread.text}, {TRAVEL + _NUT + _SPARE + _STUD_DEPTH:g} mm long without undercut, run-out "
             f"before the fork {_RUN_OUT:g} mm at most: keep the nut clear of it at the short end of the travel; drawn "

@@ -129,7 +129,8 @@ def _axle(d: LegDimensions) -> Part:
         lengths=(narrower("shoulders", -shoulder, shoulder),),
         features=(turned(d.bearing_bore_radius_mm, half_gap, -1.0), turned(d.bearing_bore_radius_mm, -half_gap, 1.0)),
         note="axle and sprocket in one piece, both seats turned on one axis within 0.02 mm and the roots of the teeth "
-        f"within 0.1 mm of it; {d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
+        f"within 0.1 mm of it; dowels' holes drilled up to 1.5 mm deeper than reamed; "
+        f"{d.chain.name}, {d.chain.teeth} teeth (ISO 606)",
     )
 
 

@@ -12,6 +12,7 @@ from functools import lru_cache
 import numpy as np
 
 from pareto_monoped.actuator.needles import roller_bearing
+from pareto_monoped.geometry.dowels import Dowel
 from pareto_monoped.geometry.features import Hole, Mouth
 from pareto_monoped.geometry.making import RELIEF_MM, Fit
 from pareto_monoped.geometry.parts import Part, Prism, disc, layer, steel_part
@@ -140,10 +141,10 @@ def support_parts(d: LegDimensions, flange_radius_mm: float, holes: tuple[Shape,
                 Fit(diameter_mm=2.0 * BORE_RADIUS, zone="h6"),
             ),
             features=(Hole(shapes=(bore,), low_mm=end, high_mm=half + FLANGE, low=centre, high=centre),),
+            registers=(Dowel(diameter_mm=2.0 * float(d.drive_dowel.radius_mm)).hole_fit,),
             # Makers of needle bearings ask 0.3 mm of raceways at least.
-            note="raceway of the needle bearing, case-hardened at least 0.3 mm deep and ground; the flange stays soft: "
-            f"its {d.drive_dowel.count:g} holes of {2.0 * d.drive_dowel.radius_mm:g} mm for dowels are reamed to H7 "
-            "together with drive sprocket and drive coupling",
+            note="raceway of the needle bearing, case-hardened at least 0.3 mm deep and ground; the flange, whose "
+            "holes are reamed, stays soft",
         ),
         steel_part(
             name="drive_bearing",

@@ -20,6 +20,7 @@ from pareto_monoped.cad.steps import Addition, Step, steps_of, stuck, take_apart
 from pareto_monoped.cad.write import meshes
 from pareto_monoped.cad.write.tables import cables_csv, hardware, items, tightening
 from pareto_monoped.errors import CheckError
+from pareto_monoped.geometry.dowels import REAMED
 from pareto_monoped.geometry.parts import Part
 from pareto_monoped.geometry.roles import FASTENERS, GREASE, JointKind, Role
 from pareto_monoped.geometry.shapes import Shape
@@ -138,6 +139,13 @@ def _page(
         "the thigh hangs down and the shank points back. Grey is what is together already. Every way is straight, and "
         "a key of full length reaches every screw in its step: both were checked with the parts' shapes. "
         "The thigh is a clamshell: each actuator is screwed to its plate before the plates are joined.</p>"
+    )
+    dowels = sorted({u.part.name.replace("_", " ") for u in product.unique if u.part.at_assembly == REAMED})
+    yield (
+        "<h2>Before the first step</h2><p>Ream the holes of all dowels, while carriers are bare and without grease: "
+        "screw the parts that they join together dry, ream through, mark how they stood, take them apart and clear out "
+        "the chips; shank plates and knee axle with foot block and striker bolted between them. The dowels are: "
+        f"{escape(', '.join(dowels))}.</p>"
     )
     yield "<h2>Steps</h2>"
     for step in steps:

@@ -112,7 +112,7 @@ def test_each_joint_is_made_once_and_not_before_its_partner_is_there(pack, liste
 
 
 def test_what_to_watch_stands_in_the_step_in_which_a_part_is_put_in(pack, listed):
-    """That dowels' holes are reamed together first, say: where the dowels are bonded, once in each unit."""
+    """Say: where dowels are bonded, whose holes were reamed before, once in each unit."""
     steps, looked_at = sections(pack), 0
     for part in (u.part for u in listed if u.part.at_assembly):
         name, joint = part.name.replace("_", " "), part.joint.text.replace("_", " ") if part.joint else ""
@@ -129,7 +129,7 @@ def test_what_to_watch_stands_in_the_step_in_which_a_part_is_put_in(pack, listed
             k for k, lines in enumerate(steps) for line in lines if re.search(rf"\b{name}\b", line) and joint in line
         ]
         assert set(said) <= set(put_in), name
-        looked_at += part.role is Role.PIN and "reamed together first" in part.at_assembly
+        looked_at += part.role is Role.PIN and "reamed together before" in part.at_assembly
     assert looked_at >= 7
 
 
@@ -140,13 +140,32 @@ def test_what_to_watch_stands_in_the_step_in_which_a_part_is_put_in(pack, listed
         ("shank core", "epoxy on its whole faces"),
         ("sun", "bond it 0.2 +-0.1 mm deeper"),
         ("encoder", "1 mm from the magnet, within 0.5 mm"),
-        ("ring", "the planets on their carrier centre it"),
+        ("ring", "the planets centre it"),
+        ("motor stator", "guide it along three rods"),
         ("2 x turnbuckle end hip", "steel held against its other head"),
         ("knee spacer", "ground before it goes in"),
     ],
 )
 def test_a_step_says_what_is_set_glued_or_ground_in_it(pack, name, said):
     assert any(line.startswith(f"{name}: ") and said in line for lines in sections(pack) for line in lines)
+
+
+def test_dowels_holes_are_reamed_before_the_first_step_all_of_them(pack, listed):
+    """Steps told it where carriers were closed and greased, and chips would have fallen into the gears."""
+    page = pack["assembly/index.html"].decode()
+    before = page[page.index("<h2>Before the first step</h2>") : page.index("<h2>Steps</h2>")]
+    dowels = {u.part.name.replace("_", " ") for u in listed if u.part.role is Role.PIN and "dowel" in u.part.name}
+    assert len(dowels) >= 7
+    assert set(before[before.index("dowels are: ") + 12 : before.index(".</p>")].split(", ")) == dowels
+
+
+def test_a_turnbuckle_is_put_together_before_it_comes(pack):
+    """Its bar was on the stud a step before the nut that goes onto the same stud."""
+    (step,) = (lines for lines in sections(pack) if any("turnbuckle nut hip" in line for line in lines))
+    (line,) = (line for line in step if "turnbuckle nut hip" in line and line.startswith(("Put together ", "Take ")))
+    for name in ("turnbuckle nut knee", "turnbuckle bar", "turnbuckle end hip", "turnbuckle end knee"):
+        assert name in line
+    assert any("each nut onto the stud of its fork first" in line for line in step)
 
 
 def test_screws_that_close_the_chain_of_bearings_are_tightened_at_the_end(pack):
@@ -157,7 +176,7 @@ def test_screws_that_close_the_chain_of_bearings_are_tightened_at_the_end(pack):
     assert re.findall(r"base \w+ rod screw far \(\d\.\d N m\)", line) != []
     driven = [line for lines in sections(pack) for line in lines if "rod screw far, " in line]
     assert len(driven) == 2
-    assert all("by hand only, until the thigh has swung freely" in line for line in driven)
+    assert all("by hand only and dry, until the thigh has swung freely" in line for line in driven)
 
 
 def test_a_motor_whose_screws_come_late_is_held_until_then(listed_framed, monkeypatch):
