@@ -45,8 +45,10 @@ def values(module):
         if inspect.isfunction(function):
             found |= {f"{function.__qualname__}.{k}": one for k, one in enumerate(function.__defaults__ or ())}
             found |= {f"{function.__qualname__}.{k}": one for k, one in (function.__kwdefaults__ or {}).items()}
+    # Lists are what a process gathers: they hold what tests before this one have done.
+    left_out = type | list
     plain = {
-        name: one for name, one in found.items() if type(one).__module__ not in TYPES and not isinstance(one, type)
+        name: one for name, one in found.items() if type(one).__module__ not in TYPES and not isinstance(one, left_out)
     }
     with np.printoptions(threshold=10_000):
         texts = {name: repr(sorted(one) if isinstance(one, set | frozenset) else one) for name, one in plain.items()}

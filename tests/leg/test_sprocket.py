@@ -45,5 +45,6 @@ def test_heads_are_sunk_in_a_wide_sprocket_only(leg):
 
 def test_the_shaft_says_how_the_dowels_of_its_soft_flange_fit(leg):
     shaft, _ = support_parts(leg, 15.0, (leg.drive_dowel,))
-    size = f"{leg.drive_dowel.count:g} holes of {2.0 * leg.drive_dowel.radius_mm:g} mm for dowels are reamed to H7"
-    assert f"the flange stays soft: its {size} together with drive sprocket and drive coupling" in shaft.note
+    assert "the flange, whose holes are reamed, stays soft" in shaft.note
+    (hole,) = (fit for fit in shaft.toleranced if fit.together)
+    assert (hole.zone, hole.diameter_mm) == ("H7", 2.0 * leg.drive_dowel.radius_mm)
