@@ -52,7 +52,9 @@ Assembly = Whole | Joined
 def take_apart(blocking: Blocking, members: Members | None = None) -> Assembly:
     """Take an assembly apart as far as straight ways out and room for keys allow."""
     everything = frozenset(range(len(blocking.bodies))) if members is None else members
-    if len(everything) == 1:
+    order = sorted(everything)
+    lasting = len(list(_pieces(_masks(blocking.lasting[np.ix_(order, order)]), (1 << len(order)) - 1)))
+    if lasting == 1:
         return Whole(members=everything)
     undone = _undone(blocking, everything)
     rest = everything - undone
@@ -66,8 +68,7 @@ def take_apart(blocking: Blocking, members: Members | None = None) -> Assembly:
         return Joined(kept=Whole(members=rest), added=nothing, out=DIRECTIONS[0], fasteners=tuple(sorted(undone)))
     split = _best_split(blocking, rest)
     if split is None:
-        lasting = _masks(blocking.lasting[np.ix_(sorted(everything), sorted(everything))])
-        return Whole(members=everything, stuck=len(list(_pieces(lasting, (1 << len(lasting)) - 1))) > 1)
+        return Whole(members=everything, stuck=True)
     out, leaving = split
     leaving, staying, crossing = _shared(blocking, out, leaving, rest - leaving, undone)
     if len(leaving) > len(staying):
