@@ -150,6 +150,21 @@ def test_an_interrupt_waits_until_an_export_has_taken_its_place(tmp_path, monkey
     )
 
 
+def test_a_signal_that_nothing_handles_ends_the_process_after_the_move():
+    """Such as SIGTERM for a script that exports; Python handles Ctrl-C itself."""
+    code = """
+import signal
+from pareto_monoped.cad.write.folder import unbroken
+signal.signal(signal.SIGTERM, signal.SIG_DFL)
+with unbroken():
+    signal.raise_signal(signal.SIGTERM)
+    print("moved", flush=True)
+print("went on", flush=True)
+"""
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout) == (-signal.SIGTERM, "moved\n")
+
+
 def test_a_folder_to_which_a_thread_still_writes_is_deleted_and_stays_away(tmp_path):
     """An export that was interrupted while it wrote left its temporary folder behind, once in a while."""
     folder = tmp_path / "half"

@@ -87,6 +87,15 @@ def test_a_motor_comes_back_from_its_values(name):
     assert checked(type(motor), json.loads(json.dumps(asdict(motor))), source="") == motor
 
 
+def test_each_joint_gets_its_own_motor_back(tmp_path):
+    """From a record of another version, of which no jumps are simulated."""
+    job = jobs.case_job("B", motor="U8", knee_motor="VT8020", rules="paper", folder=tmp_path)
+    record = records.expected_record(job) | {"made_by": "pareto-monoped 0", "formats": []}
+    (tmp_path / "design.json").write_text(json.dumps(record))
+    again = records.record_job(tmp_path / "design.json", folder=tmp_path / "again")
+    assert (again.motor, again.knee_motor) == (job.motor, job.knee_motor)
+
+
 def damaged(change):
     """A function that changes a good record's values."""
 

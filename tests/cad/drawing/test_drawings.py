@@ -3,6 +3,7 @@
 import csv
 import dataclasses
 import io
+from collections import Counter
 from types import SimpleNamespace
 
 import numpy as np
@@ -135,6 +136,16 @@ def test_the_exploded_sheets_number_every_item_once(product, drawn):
     assert sorted(map(int, numbers)) == list(range(1, len(product.unique) + 1))
     said = [text for page in read for text, _, _ in page.texts]
     assert [f"A1   {k}/{len(read) + 2}" in said for k in range(2, len(read) + 2)] == [True] * len(read)
+
+
+def test_the_exploded_sheets_number_an_item_of_two_units_once(product):
+    """As two actuators of one gear ratio share theirs; here the foot has an item of the base."""
+    base, foot = (next(k for k, i in enumerate(product.instances) if i.unit == unit) for unit in ("base_frame", "foot"))
+    kinds = [product.kinds[base if k == foot else k] for k in range(len(product.kinds))]
+    sheets = exploded_sheets(dataclasses.replace(product, kinds=tuple(kinds)))
+    numbers = Counter(label.text for paper, *_ in sheets for label in paper.labels if label.text.isdigit())
+    assert set(numbers) == {f"{kind + 1}" for kind in kinds}
+    assert set(numbers.values()) == {1}
 
 
 def test_the_sheet_of_the_cables_notes_a_bend_that_is_too_tight(product, sheet_of_cables, monkeypatch):

@@ -79,6 +79,12 @@ def test_it_has_the_entities_that_the_kernel_writes_of_all_solids(assembly, part
     assert entities(written(assembly, parts, solids)) == entities(step.tree_step(assembly, solids))
 
 
+def test_the_time_in_a_file_is_not_that_at_which_it_was_written(assembly, parts, solids):
+    """Two exports of one design have the same bytes, however far apart they are made."""
+    for text in (parts["plate"], written(assembly, parts, solids)):
+        assert re.search(rb"FILE_NAME\('[^']*',\s*'([^']*)'", text)[1].decode() == step.TIMESTAMP.isoformat()
+
+
 def test_every_part_keeps_the_uncertainty_of_its_own_file(assembly, parts, solids):
     # A part's tolerance is that of its solid, not that of its stand-in.
     rough = parts | {"plate": parts["plate"].replace(b"LENGTH_MEASURE(1.E-07)", b"LENGTH_MEASURE(3.E-05)")}
