@@ -98,3 +98,19 @@ def test_a_film_has_the_motors_of_either_joint(tmp_path, monkeypatch):
     traced, exchanged = (pm.trace(C, **{f"{joint}_motor": "U8"}) for joint in ("hip", "knee"))
     np.testing.assert_array_equal(steps["base_z_m"], traced["base_z_m"])
     assert traced["base_z_m"].max() != exchanged["base_z_m"].max()
+
+
+@pytest.mark.parametrize(
+    ("asked", "found"),
+    [
+        ({"motor": "U8"}, ("U8", "U8")),
+        ({"motor": "U8", "hip_motor": "VT8020"}, ("VT8020", "U8")),
+        ({"motor": "U8", "knee_motor": "VT8020"}, ("U8", "VT8020")),
+    ],
+)
+def test_an_export_has_the_motors_of_either_joint(tmp_path, monkeypatch, asked, found):
+    jobs = []
+    monkeypatch.setattr("pareto_monoped.cad.batch.run", lambda job: jobs.append(job) or {})
+    pm.export(C, tmp_path, **asked)
+    maps = jobs[0].maps()
+    assert (maps.hip.motor.name, maps.knee.motor.name) == found

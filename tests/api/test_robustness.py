@@ -9,6 +9,7 @@ import pytest
 import pareto_monoped as pm
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.errors import DatabaseError, InputError, SelectionError
+from pareto_monoped.storage.extra_rows import read_limits
 
 
 @pytest.fixture(scope="module")
@@ -64,6 +65,15 @@ def test_sensitivity_is_that_of_the_command(stored, capsys):
         assert rows["name"].tolist() == [one["factor"]["name"] for one in said[about]["factors"]]
         shares = [one["measures"]["height_m"]["total"] for one in said[about]["factors"]]
         assert rows["height_m.total"].tolist() == shares
+
+
+@pytest.mark.usefixtures("few_samples")
+def test_limit_searches_with_the_seed_that_is_asked_for(stored):
+    knee = stored.pick("knee")
+    pm.limit(stored, knee, jumps=4, seed=2)
+    assert read_limits(stored.path)[knee.trial].settings["seed"] == 2
+    with pytest.raises(InputError, match="seed = -1"):
+        pm.limit(stored, knee, jumps=4, seed=-1)
 
 
 def test_table_1_is_that_of_the_command(capsys):

@@ -240,6 +240,14 @@ def test_a_missing_study_is_one_line(tmp_path):
     assert "studies/quick.toml" in done.stderr
 
 
+@pytest.mark.parametrize("code", [2, 130])
+def test_the_job_ends_with_the_code_of_the_step_that_failed(tmp_path, monkeypatch, code):
+    """Such as 130, with which a study ends that was interrupted and is stored."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("pareto_monoped.cli.pareto._code_of", lambda words: code)
+    assert cli(["pareto", str(ROOT / "studies" / "quick.toml"), "-o", "out"]) == code
+
+
 def stored(db):
     """How many trials a database has, which may not be made yet."""
     try:

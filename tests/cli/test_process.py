@@ -1,5 +1,6 @@
 """The process of a command: its signals and its end."""
 
+import errno
 import os
 import signal
 import subprocess
@@ -7,6 +8,7 @@ import sys
 
 import pytest
 
+from pareto_monoped.cli.process import told
 from tests.cli.support import ROOT, STORED
 
 WAITS = """
@@ -194,3 +196,10 @@ def test_a_signal_while_the_end_is_told_leaves_no_traceback():
     line = [sys.executable, "-c", LATE]
     done = subprocess.run(line, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
+
+
+def test_an_error_of_the_system_names_both_files_that_it_is_about():
+    error = OSError(errno.EXDEV, "Invalid cross-device link", "one.db", None, "two.db")
+    line, code = told(error)
+    assert "file 'one.db', 'two.db': cannot be used (Invalid cross-device link)" in line
+    assert code == 2
