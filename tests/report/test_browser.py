@@ -155,6 +155,13 @@ def test_a_height_typed_in_gets_the_cheapest_design_that_reaches_it(tab, data, s
     assert f"Trial {trial}" in tab.text("#ask-answer")
 
 
+def test_a_number_is_typed_key_by_key(tab):
+    """The page answers each key, and leaves what is typed alone."""
+    tab.page.fill("#ask-height", "")
+    tab.page.locator("#ask-height").press_sequentially("0.80")
+    assert tab.page.input_value("#ask-height") == "0.80"
+
+
 def test_an_energy_typed_in_gets_the_highest_jump_on_it(tab, data):
     from pareto_monoped.pareto.pick import pick
     from pareto_monoped.pareto.selectors import MaxEnergy

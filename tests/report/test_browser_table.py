@@ -114,6 +114,14 @@ def test_a_condition_on_any_measure_is_the_whole_pages(tab, card, data):
     assert "peak foot force" in tab.text("#conditions")
 
 
+def test_a_measure_that_has_a_condition_already_is_chosen_with_its_ends(tab, card):
+    limit = telling_mass_kg(card)
+    tab.page.fill("#ask-mass_kg", repr(limit))
+    for measure, shown in (("energy_j", ["", ""]), ("mass_kg", ["", repr(limit)])):
+        tab.page.select_option("#rows-measure", measure)
+        assert [tab.page.input_value(f"#rows-{end}") for end in ("from", "to")] == shown
+
+
 def test_a_tick_keeps_a_design_and_six_are_the_most(tab, card):
     boxes = tab.page.locator("#rows-body input[type=checkbox]")
     for i in range(6):
