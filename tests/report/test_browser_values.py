@@ -334,6 +334,16 @@ def test_the_drawn_links_hang_together_and_the_foot_is_where_it_was_simulated(ta
     assert np.ptp(standing) < 0.02
 
 
+def test_the_arcs_of_the_joints_ranges_are_as_long_as_those(tab, mixed):
+    """The hip's is more than half a circle, the knee's less."""
+    radius_m = 0.085
+    (ranges_rad,) = mixed.card.stops_rad.values()
+    hip_rad, knee_rad = np.ptp(ranges_rad, axis=1)
+    assert hip_rad > np.pi > knee_rad
+    arcs_m = tab.page.eval_on_selector_all("#stage .stops path", "(arcs) => arcs.map((arc) => arc.getTotalLength())")
+    assert arcs_m == pytest.approx([radius_m * hip_rad, radius_m * knee_rad], rel=1e-3)
+
+
 def axis_of(tab, name):
     """Ends of an axis of the parallel coordinates, and its ticks: place and number."""
     return tab.page.evaluate(
