@@ -140,6 +140,7 @@ def test_every_file_of_code_and_data_counts(tmp_path, monkeypatch):
 
 def test_without_a_place_to_write_arrays_are_computed(tmp_path, monkeypatch):
     (tmp_path / "file").touch()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))  # which an empty variable of ours does not lead to
     for place in (tmp_path / "file" / "kept", ""):
         monkeypatch.setenv(CACHE, str(place))
         for _ in range(2):

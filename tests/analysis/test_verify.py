@@ -7,10 +7,11 @@ import pytest
 
 from pareto_monoped.analysis.verify import require_sound, verify
 from pareto_monoped.definition.study import study_from_dict
-from pareto_monoped.errors import DatabaseError
+from pareto_monoped.errors import DatabaseError, StudyError
 from pareto_monoped.storage.file import FileConnection
 from pareto_monoped.storage.optuna_tables import stored_digest, trial_ids
 from pareto_monoped.storage.reader import read_study
+from pareto_monoped.storage.store import Store
 from pareto_monoped.study.run import run
 from tests.study.support import UNSEALED, change, reseal
 
@@ -96,6 +97,7 @@ def test_what_optuna_and_its_users_may_change_is_no_damage(path):
     assert verify(path).findings == ()
 
 
+PARAM = "trial_id, param_name, param_value, distribution_json"
 FEASIBLE = "(SELECT min(trial) FROM monoped_trials WHERE state = 'feasible')"
 
 
@@ -119,6 +121,10 @@ FEASIBLE = "(SELECT min(trial) FROM monoped_trials WHERE state = 'feasible')"
         ("DELETE FROM monoped_history WHERE generation = 2", "does not lead to 50 trials"),
         ("UPDATE monoped_history SET generation = 9 WHERE generation = 2", "does not count generations from 0 on"),
         ("INSERT INTO monoped_audits VALUES (77, 1, '{}')", "audit of trial 77"),
+        (
+            f"INSERT INTO trial_params ({PARAM}) SELECT {PARAM} FROM trial_params LIMIT 1",
+            "a parameter in Optuna's tables",
+        ),
     ],
 )
 def test_impossible_values_are_found_without_a_hash(path, statement, words):
@@ -144,6 +150,16 @@ def test_a_measure_that_came_after_the_first_trials_is_not_missed_in_them(path):
     reseal(path)
     (found,) = verify(path, simulate=100).findings
     assert found.startswith("trial 11 jumps otherwise: its rise_m is nan, again ")
+
+
+def test_jumps_are_not_compared_by_code_or_a_machine_that_would_compute_others(path):
+    data = read_study(path)
+    probe = data.meta.probe
+    probe[0][0] += 1e-15
+    with Store(path, data.study) as store:
+        store.set_meta({"probe": probe})
+    with pytest.raises(StudyError, match="began with other results: height and energy of the probe designs"):
+        verify(path, simulate=1)
 
 
 def test_a_jump_that_differs_is_found(path):

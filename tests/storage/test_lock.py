@@ -1,5 +1,6 @@
 """The lock against other real processes."""
 
+import errno
 import os
 import signal
 import subprocess
@@ -7,7 +8,7 @@ import sys
 
 import pytest
 
-from pareto_monoped.errors import DatabaseError, OutputError
+from pareto_monoped.errors import DatabaseError, DiskError, OutputError
 from pareto_monoped.storage.lock import holder, locked
 from tests.storage.test_other_systems import _HOLD
 
@@ -50,6 +51,17 @@ def test_it_is_freed_by_an_error_inside(tmp_path):
         raise RuntimeError
     with locked(tmp_path / "s.db"):
         pass
+
+
+@pytest.mark.parametrize(("number", "kind"), [(errno.ENOSPC, DiskError), (errno.EACCES, DatabaseError)])
+def test_a_full_disk_is_no_fault_of_what_was_given(tmp_path, monkeypatch, number, kind):
+    def refuse(*_):
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr("pareto_monoped.storage.lock._write", refuse)
+    with pytest.raises(kind, match=os.strerror(number)), locked(tmp_path / "s.db"):
+        pass
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_two_studies_do_not_block_each_other(tmp_path, other):
