@@ -66,6 +66,7 @@ if TYPE_CHECKING:
     from pareto_monoped.jump.calibration import Calibration
     from pareto_monoped.jump.laws import OwnLaw
     from pareto_monoped.measures import MEASURES, Measure
+    from pareto_monoped.pareto.growth import SecondSearch
     from pareto_monoped.robot.build import Robot
     from pareto_monoped.search.algorithm import Scores, Space
     from pareto_monoped.study.outside import OptunaObjective
@@ -76,11 +77,11 @@ __all__ = [
     "MEASURES", "PAPER_CASES", "VARIABLES", "Actuator", "ActuatorMap", "Alternative", "Calibration",
     "CalibrationError", "CheckError", "DatabaseError", "Design", "DesignError", "DiskError", "Export", "InputError",
     "LostTrialsError", "Measure", "MonopedProblem", "Motor", "MotorError", "OptunaObjective", "OutputError", "OwnLaw",
-    "PaperCase", "ParetoMonopedError", "Picked", "Progress", "Robot", "Scores", "SelectionError", "ServerError",
-    "SimulationError", "Space", "StoredStudy", "Study", "StudyError", "Variable", "Verification", "WorkerError",
-    "__version__", "actuator_map", "build_robot", "export", "export_trial", "film", "limit", "load_calibration",
-    "load_motor", "load_study", "plot_actuators", "plot_front", "plot_jump", "resume", "robust", "run",
-    "run_campaign", "sensitivity", "simulate", "status", "table1", "trace", "verify", "write_report",
+    "PaperCase", "ParetoMonopedError", "Picked", "Progress", "Robot", "Scores", "SecondSearch", "SelectionError",
+    "ServerError", "SimulationError", "Space", "StoredStudy", "Study", "StudyError", "Variable", "Verification",
+    "WorkerError", "__version__", "actuator_map", "build_robot", "export", "export_trial", "film", "limit",
+    "load_calibration", "load_motor", "load_study", "plot_actuators", "plot_front", "plot_jump", "resume", "robust",
+    "run", "run_campaign", "sensitivity", "simulate", "status", "table1", "trace", "verify", "write_report",
 ]  # fmt: skip
 
 _HOMES = {
@@ -117,6 +118,7 @@ _HOMES = {
     "jump.calibration": ("Calibration",),
     "jump.laws": ("OwnLaw",),
     "measures": ("MEASURES", "Measure"),
+    "pareto.growth": ("SecondSearch",),
     "robot.build": ("Robot",),
     "search.algorithm": ("Scores", "Space"),
     "study.outside": ("OptunaObjective",),

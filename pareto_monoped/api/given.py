@@ -46,10 +46,10 @@ def executor_of(given: Any) -> Any:
     raise InputError(complaint("executor", given, allowed, "give one, or leave it out"))
 
 
-def seed_of(given: Any) -> int:
+def seed_of(given: Any, what: str = "seed") -> int:
     """Return the seed of a random generator, a whole number from 0 to 2**63 - 1."""
     if isinstance(given, bool) or not isinstance(given, Integral) or not 0 <= int(given) < 2**63:
-        raise InputError(complaint("seed", given, "a whole number from 0 to 2**63 - 1", "correct it"))
+        raise InputError(complaint(what, given, "a whole number from 0 to 2**63 - 1", "correct it"))
     return int(given)
 
 

@@ -5,7 +5,8 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Literal
 
 from pareto_monoped.api.given import (
     called_after,
@@ -99,6 +100,7 @@ def run(
     calibration: AnyCalibration | None = None,
     evaluations: int | None = None,
     seed: int | None = None,
+    second_seed: int | Literal[True] | None = None,
     workers: int | None = None,
     executor: Executor | None = None,
     callback: "Callable[[Progress], Any] | None" = None,
@@ -127,6 +129,7 @@ def run(
             ``paper`` brings the gearbox rules ``paper``; else rules and strength stay the study's.
         evaluations: total number of trials, instead of the study's.
         seed: instead of the study's.
+        second_seed: search again with this seed, or the next one if True, and compare: the result has it as ``second``.
         workers: threads that simulate, all cores if None. It does not change the trials.
         executor: does the jumps in their place, such as ``concurrent.futures.ProcessPoolExecutor``; it does not change
             the trials either.
@@ -156,22 +159,25 @@ def run(
         >>> folder.cleanup()
     """
     from pareto_monoped.study.run import run as run_study
+    from pareto_monoped.study.run import run_second, seed_of_second
 
     one = study if isinstance(study, Study) else Study.from_toml(as_path(study, "study", allowed=_STUDY))
     target = _database(study, db)
     changed, own = _asked(one, algorithm, objectives, constraints, calibration, seed)
+    second = found = None
+    if second_seed is not None:
+        given = second_seed if second_seed is True else seed_of(second_seed, "second_seed")
+        second = seed_of_second(changed.seed, given)
+        if not isinstance(own.algorithm, type) and hasattr(own.algorithm, "ask"):
+            allowed = "a class or function that makes one, for a second seed"
+            raise StudyError(complaint("algorithm", own.algorithm, allowed, "give one"))
+    options = {"workers": count_of("workers", workers), "executor": executor_of(executor), "own": own}
     with _heard(callback, progress) as hear:
-        summary = run_study(
-            changed,
-            target,
-            evaluations=count_of("evaluations", evaluations),
-            workers=count_of("workers", workers),
-            executor=executor_of(executor),
-            progress=hear,
-            own=own,
-        )
+        summary = run_study(changed, target, evaluations=count_of("evaluations", evaluations), progress=hear, **options)
+        if second is not None and summary.stop_reason != "interrupted":
+            _, found = run_second(summary, changed, second, progress=hear, **options)
     _warn_of_no_front(summary)
-    return load_study(summary.db)
+    return replace(load_study(summary.db), second=found)
 
 
 def _asked(

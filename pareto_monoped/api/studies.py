@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from pareto_monoped.analysis.alternatives import Alternative
     from pareto_monoped.definition.study import Study
+    from pareto_monoped.pareto.growth import SecondSearch
     from pareto_monoped.pareto.objectives import Objectives
     from pareto_monoped.storage.reader import StudyData
 
@@ -78,6 +79,7 @@ class StoredStudy:
     path: StudyPlace  #: the database; as text the name of a file, or the address of a server without its password
     study: "Study"  #: its definition
     data: "StudyData"  #: everything that was read; its form may change between versions
+    second: "SecondSearch | None" = None  #: how far a second search agrees, where ``run`` was asked for one
 
     def __repr__(self) -> str:
         """Return one line: name, place, trials and objectives."""

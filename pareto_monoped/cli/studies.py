@@ -4,9 +4,9 @@ import json
 import textwrap
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import fields
+from dataclasses import asdict, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
@@ -14,9 +14,11 @@ from pareto_monoped.cli import options
 from pareto_monoped.cli.options import DATABASE, Local, executor_at, where, where_options, workers_option
 from pareto_monoped.cli.terminal import echo, name, new_console, note, wrapped
 from pareto_monoped.design import HEADLINE_HEIGHT_M
+from pareto_monoped.errors import InputError, complaint
 from pareto_monoped.storage.place import StudyPlace
 
 if TYPE_CHECKING:
+    from pareto_monoped.pareto.growth import SecondSearch
     from pareto_monoped.study.run import RunSummary
     from pareto_monoped.study.session import Progress
 
@@ -37,10 +39,30 @@ _REASONS = {
 }
 
 
+class _Seed(click.IntRange):
+    """A seed; or "next", which is True."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the number, or True; a file may have taken its place."""
+        if value == "next":
+            return True
+        if isinstance(value, str) and value.endswith(".toml"):
+            raise InputError(complaint("--second-seed", value, "a number or nothing", "put it after STUDY.toml"))
+        return super().convert(value, param, ctx)
+
+
 @click.command()
 @click.argument("study_file", metavar="STUDY.toml", type=Local())
 @_evaluations
 @click.option("--seed", type=click.IntRange(0, 2**63 - 1), metavar="N", help="Random seed, instead of the study's.")
+@click.option(
+    "--second-seed",
+    type=_Seed(0, 2**63 - 1),
+    is_flag=False,
+    flag_value="next",
+    metavar="[N]",
+    help="Search again with this seed, or the next one, and compare.",
+)
 @workers_option
 @where_options
 @click.option("--db", type=DATABASE, metavar="DB", help="Database.  [default: STUDY.db beside STUDY.toml]")
@@ -56,6 +78,7 @@ def run(
     study_file: Path,
     evaluations: int | None,
     seed: int | None,
+    second_seed: int | Literal[True] | None,
     workers: int | None,
     processes: int | None,
     scheduler: str | None,
@@ -71,26 +94,52 @@ def run(
     from pareto_monoped.definition.goals import names_of
     from pareto_monoped.definition.study import load_study
     from pareto_monoped.study.run import run as run_study
+    from pareto_monoped.study.run import run_second, seed_of_second
 
     study = load_study(
         study_file,
         objectives=None if objectives is None else names_of(objectives),
+        seed=seed,
         strength=False if no_strength else None,
     )
+    second = None if second_seed is None else seed_of_second(study.seed, second_seed)
     target = db or study_file.with_suffix(".db")
     place = where(processes, scheduler, workers)
-    with executor_at(place) as executor, progress_reports(as_json) as progress:
-        summary = run_study(
-            study,
-            target,
-            evaluations=evaluations,
-            seed=seed,
-            workers=workers,
-            executor=executor,
-            progress=progress,
-            notify=_said,
+    with executor_at(place) as executor:
+        given: dict[str, Any] = {"workers": workers, "executor": executor, "notify": _said}
+        with progress_reports(as_json) as progress:
+            summary = run_study(study, target, evaluations=evaluations, progress=progress, **given)
+        code = _finish(summary, as_json)
+        if second is None or code:
+            return code
+        with progress_reports(as_json) as progress:
+            again, found = run_second(summary, study, second, progress=progress, **given)
+    code = _finish(again, as_json)
+    if found is not None:
+        _print_second(found, (study.seed, second), as_json)
+    return code
+
+
+def _print_second(found: "SecondSearch", seeds: tuple[int, int], as_json: bool) -> None:
+    """Print how far a second search agrees: a table, and what follows from it."""
+    if as_json:
+        echo(json.dumps({"event": "second_search", "seeds": seeds} | asdict(found) | {"text": found.text()}))
+        return
+    from rich import box
+    from rich.table import Column, Table
+
+    titles = (*(f"seed {seed}" for seed in seeds), "difference")
+    columns = (Column(title, justify="right", min_width=10) for title in titles)
+    table = Table("", *columns, box=box.SIMPLE_HEAD, pad_edge=False)
+    rows = zip(found.heights_m, found.energies_j, found.differences, strict=True)
+    for height, energies, difference in rows:
+        cells = [f"{energy:.2f} J" for energy in energies]
+        table.add_row(
+            f"least energy for {height:.2f} m or more", *cells, f"{round(100.0 * difference, 1) + 0.0:+.1f} %"
         )
-    return _finish(summary, as_json)
+    table.add_row("share of the joined hypervolume alone", *(f"{100.0 * share:.1f} %" for share in found.alone), "")
+    new_console(width=80).print(table)
+    echo(wrapped(found.text(), indent=0))
 
 
 @click.command()

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from pareto_monoped.errors import require_extra
-from pareto_monoped.storage.address import Server, is_address, server_of
+from pareto_monoped.storage.address import LONGEST_SCHEMA, Server, is_address, server_of
 from pareto_monoped.storage.base import Storage
 
 StudyPlace = Path | Server
@@ -28,3 +28,10 @@ def storage_of(place: StudyPlace) -> Storage:
     from pareto_monoped.storage.server import ServerStorage
 
     return ServerStorage(place)
+
+
+def beside(place: StudyPlace, suffix: str) -> StudyPlace:
+    """Return the place of another study, whose file or schema has the same name and a suffix."""
+    if isinstance(place, Path):
+        return place.with_stem(place.stem + suffix)
+    return place.of_schema((place.schema or "")[: LONGEST_SCHEMA - len(suffix)] + suffix)

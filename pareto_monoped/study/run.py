@@ -4,19 +4,22 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, Literal
+
+import numpy as np
 
 from pareto_monoped.compute.chunks import cores
 from pareto_monoped.definition import provenance
 from pareto_monoped.definition.algorithms import WeightedSettings, share_of
 from pareto_monoped.definition.study import Study
-from pareto_monoped.errors import StudyError
+from pareto_monoped.errors import StudyError, complaint
+from pareto_monoped.pareto.growth import SecondSearch, left_to_gain, second_search
 from pareto_monoped.pareto.objectives import hypervolume
 from pareto_monoped.search.registry import make_algorithm
 from pareto_monoped.storage.base import BY_NAME, StudyLock
 from pareto_monoped.storage.kept_front import foreign_note
 from pareto_monoped.storage.meta import StudyMeta
-from pareto_monoped.storage.place import StudyPlace, storage_of
+from pareto_monoped.storage.place import StudyPlace, beside, storage_of
 from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.storage.store import Store, create_database
 from pareto_monoped.study.audits import audit_front
@@ -146,6 +149,29 @@ def resume(
         _refuse_fewer(data, evaluations, db)
         budget = evaluations or data.meta.budget
         return _go_on(db, data, data.study, simulator, budget, progress or _silent, notify or _silent, lock, own)
+
+
+def seed_of_second(seed: int, given: int | Literal[True]) -> int:
+    """Return the seed of a second search of a study: that ``given``, or the next one if that is True."""
+    found = (seed + 1) % 2**63 if given is True else given
+    if found == seed:
+        raise StudyError(complaint("second seed", found, "another one than the study's", "give another, or no number"))
+    return found
+
+
+def run_second(first: RunSummary, study: Study, seed: int, **options: Any) -> tuple[RunSummary, SecondSearch | None]:
+    """Search a study that has ended again with another seed, in a database beside the first, and compare at its end.
+
+    ``options`` are those of ``run``. The budget, and the iterations of a weighted search, are those of the first.
+    """
+    data, corner = first.data, first.data.reference_point
+    same = replace(shared_as_stored(study, data.study), shared_iterations=False)
+    second = run(same, beside(first.db, f"_seed_{seed}"), evaluations=data.meta.budget, seed=seed, **options)
+    if second.stop_reason == "interrupted":
+        return second, None
+    left = left_to_gain(*data.history[["evaluations", "hypervolume"]].to_numpy().T)
+    fronts = [one.front()[list(corner.objectives.names)].to_numpy(dtype=np.float64) for one in (data, second.data)]
+    return second, second_search(fronts[0], fronts[1], corner, left)
 
 
 def _checked(db: StudyPlace, lock: StudyLock) -> StudyData:

@@ -17,7 +17,8 @@ from pareto_monoped.errors import ParetoMonopedError
 ROOT = Path(__file__).parents[2]
 FUNCTIONS = [name for name in pm.__all__ if callable(getattr(pm, name))]
 RETURNED = {
-    "Actuator", "ActuatorMap", "Alternative", "Measure", "PaperCase", "Progress", "Robot", "Variable", "Verification",
+    "Actuator", "ActuatorMap", "Alternative", "Measure", "PaperCase", "Progress", "Robot", "SecondSearch", "Variable",
+    "Verification",
 }  # fmt: skip
 """Classes that are public for annotations: nobody makes their objects but the functions that return them."""
 

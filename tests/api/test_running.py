@@ -1,5 +1,7 @@
 """Studies that are run from scripts: the trials of the command line, other goals, and a callback that stops."""
 
+import json
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -178,3 +180,44 @@ def test_a_notebook_shows_a_bar_by_itself(tmp_path):
     shown = [one.data.get("text/html", "") for one in done.cells[0].outputs if "data" in one]
     assert any("<progress value='40' max='40'>" in html for html in shown)
     assert any("<b>study n</b>" in html for html in shown)
+
+
+def test_a_second_seed_is_that_of_the_command_line(file, tmp_path, capsys):
+    stored = pm.run(file, tmp_path / "own.db", second_seed=True)
+    assert stored.study.seed + 1 == pm.load_study(tmp_path / f"own_seed_{stored.study.seed + 1}.db").study.seed
+    assert cli(["run", str(file), "--second-seed", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out.splitlines()[-1])
+    assert (list(stored.second.alone), stored.second.text()) == (told["alone"], told["text"])
+    assert pm.load_study(stored.path).second is None
+
+
+class Anywhere:
+    """Designs from all over the space."""
+
+    def __init__(self, space, seed):
+        self.space, self.generator = space, np.random.default_rng(seed)
+
+    def ask(self):
+        return self.generator.uniform(self.space.lower, self.space.upper, (10, len(self.space.lower)))
+
+    def tell(self, scores):
+        pass
+
+
+def test_an_own_algorithm_is_made_anew_for_a_second_seed(tmp_path):
+    study = pm.Study.define(name="own", evaluations=20, audit=False, strength=False)
+    stored = pm.run(study, tmp_path / "own.db", algorithm=Anywhere, second_seed=7)
+    assert not np.isin(pm.load_study(tmp_path / "own_seed_7.db").trials.energy_j, stored.trials.energy_j).all()
+    assert stored.second is not None
+    made = Anywhere(None, 1)
+    with pytest.raises(pm.StudyError, match=r"algorithm = .*: must be a class or function that makes one"):
+        pm.run(study, tmp_path / "new.db", algorithm=made, second_seed=7)
+    with pytest.raises(pm.InputError, match="second_seed = 'next': must be a whole number"):
+        pm.run(study, tmp_path / "new.db", second_seed="next")
+    assert not (tmp_path / "new.db").exists()
+
+
+def test_a_run_that_its_callback_stops_is_not_searched_again(file, tmp_path):
+    stored = pm.run(file, tmp_path / "own.db", second_seed=7, callback=lambda _: True)
+    assert (stored.finished, stored.second) == (False, None)
+    assert not (tmp_path / "own_seed_7.db").exists()

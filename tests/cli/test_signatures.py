@@ -112,6 +112,7 @@ OPTIONS = {
     "studies": (
         "run small.toml --workers 1 --json",
         "run small.toml --workers 1 --evaluations 15",
+        "run small.toml --workers 1 --second-seed 7",
         "run small.toml --objectives height_m,drift_m",
         "run pair.toml --db new.db --objectives height_m,drift_m --evaluations 20 --seed 9 --no-strength --workers 1",
         "status new.db",

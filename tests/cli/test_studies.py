@@ -1,16 +1,20 @@
 """``run``, ``resume`` and ``status`` as a user types them."""
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pandas as pd
 import pytest
+from pymoo.indicators.hv import HV
 
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.measures import measure
 from pareto_monoped.pareto.front import AtHeight
+from pareto_monoped.storage.reader import read_study
 from pareto_monoped.study.run import RunSummary
 from pareto_monoped.study.session import Progress
 
@@ -239,3 +243,96 @@ def test_progress_gives_the_time_left_in_minutes_and_seconds():
     assert progress.text() == "20/40, 13/s, 2:05 left, hypervolume 1.23, 0.8 m not reached"
     assert replace(progress, at_height=replace(unreached, value=9.876)).text().endswith("9.88 J at 0.8 m")
     assert replace(progress, at_height=None).text().endswith("hypervolume 1.23")
+
+
+def shares_by_pymoo(*paths):
+    """Percent of the hypervolume of both fronts joined that each has alone."""
+    points = [read_study(path).front()[["height_m", "energy_j"]].to_numpy() * [-1.0, 1.0] for path in paths]
+    corner = read_study(paths[0]).reference_point.values
+    volume = HV(ref_point=np.array(corner) * [-1.0, 1.0])
+    joined = volume(np.concatenate(points))
+    return [100.0 * (1.0 - volume(points[other]) / joined) for other in (1, 0)]
+
+
+def test_a_second_seed_searches_again_beside_the_first_and_compares_both(study, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    first, second = study.with_suffix(".db"), study.with_name("s_seed_2.db")
+    for new in (40, 0):
+        assert cli(["run", str(study), "--second-seed", "--workers", "1"]) == 0
+        said = capsys.readouterr()
+        assert f"{first}: 40 evaluations ({new} new" in said.err
+        assert f"{second}: 40 evaluations ({new} new" in said.err
+    assert (read_study(first).study.seed, read_study(second).study.seed) == (1, 2)
+    lines = said.out.splitlines()
+    assert max(map(len, lines)) <= 80
+    shares = shares_by_pymoo(first, second)
+    assert min(shares) > 0.0
+    row = next(line for line in lines if "hypervolume alone" in line)
+    assert re.findall(r"[0-9.]+ %", row) == [f"{share:.1f} %" for share in shares]
+    assert "seed 1       seed 2   difference" in said.out
+    rows = re.findall(r"least energy for ([0-9.]+) m or more +([0-9.]+) J +([0-9.]+) J +(\S+) %", said.out)
+    assert rows
+    for height, *energies, difference in rows:
+        fronts = [read_study(db).front() for db in (first, second)]
+        least = [front.energy_j[front.height_m >= float(height)].min() for front in fronts]
+        assert energies == [f"{one:.2f}" for one in least]
+        assert float(difference) == pytest.approx(100.0 * (least[1] / least[0] - 1.0), abs=0.051)
+    assert lines[-1].endswith(".")
+
+
+def test_a_second_seed_as_json_adds_a_line(study, capsys):
+    assert cli(["run", str(study), "--second-seed", "7", "--json"]) == 0
+    events = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert [one["event"] for one in events if one["event"] != "generation"] == ["end", "end", "second_search"]
+    assert events[-1]["seeds"] == [1, 7]
+    shares = shares_by_pymoo(study.with_suffix(".db"), study.with_name("s_seed_7.db"))
+    assert [100.0 * share for share in events[-1]["alone"]] == pytest.approx(shares)
+
+
+@pytest.mark.parametrize("stopped", [1, 2])
+def test_what_is_interrupted_is_not_compared(stopped, study, capsys, monkeypatch):
+    """The first stop leaves no second database; the same command goes on."""
+    from pareto_monoped.study import session
+
+    go, calls = session.Session.go, []
+
+    def interrupted(self, interrupt):
+        calls.append(self)
+        interrupt.asked = interrupt.asked or len(calls) == stopped
+        return go(self, interrupt)
+
+    monkeypatch.setattr(session.Session, "go", interrupted)
+    words = ["run", str(study), "--second-seed", "--workers", "1"]
+    assert cli(words) == 130
+    assert "alone" not in capsys.readouterr().out
+    assert study.with_name("s_seed_2.db").exists() == (stopped == 2)
+    assert cli(words) == 0
+    assert "alone" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        (["{study}", "--second-seed", "1"], "second seed = 1: must be another one than the study's"),
+        (["{study}", "--seed", "5", "--second-seed=5"], "second seed = 5: must be another one"),
+        (["--second-seed", "{study}"], "must be a number or nothing; put it after STUDY.toml"),
+        (["{study}", "--second-seed", "x"], "'x' is no whole number"),
+    ],
+)
+def test_a_second_seed_that_cannot_be_is_refused_before_the_search(words, error, study, tmp_path, capsys):
+    assert cli(["run", *(word.format(study=study) for word in words)]) == 2
+    said = capsys.readouterr()
+    assert error in said.err
+    assert (said.out, said.err.count("\n")) == ("", 1)
+    assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
+
+
+def test_a_database_that_is_in_the_second_searchs_place_is_left_alone(study, capsys):
+    """It may be another study; the first is finished, and the same command goes on after the cure."""
+    second = study.with_name("s_seed_2.db")
+    assert cli(["run", str(study), "--seed", "3", "--db", str(second)]) == 0
+    before = second.read_bytes()
+    capsys.readouterr()
+    assert cli(["run", str(study), "--second-seed"]) == 2
+    assert "study.seed: 3 -> 2" in capsys.readouterr().err
+    assert second.read_bytes() == before

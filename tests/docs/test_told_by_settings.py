@@ -247,6 +247,8 @@ SETTINGS = {
         f"the best in each of its {archive._POSTS} parts",
         f"in which less than {percent(surrogate._HELD)} of the model's choices",
         f"is expected to gain {growth._DOUBLING:g} of what the doubling before it gained",
+        f"differ by more than {percent(growth.ENOUGH)} of energy at a height, or one has more than "
+        f"{percent(growth.ENOUGH)} of the hypervolume alone",
         f"with at most the paper's {PAPER_ITERATIONS} each",
         f"At most {percent(settings.MOST_FAILED)} may fail",
         f"A design must reach {MIN_HEIGHT_M:g} m",

@@ -1,9 +1,12 @@
 """Addresses: what libpq gets, what may be shown, and what is refused without a word of it."""
 
+from pathlib import Path
+
 import pytest
 
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.storage.address import LONGEST_SCHEMA, is_address, schema_for, server_of
+from pareto_monoped.storage.place import beside
 
 
 @pytest.mark.parametrize(
@@ -81,3 +84,10 @@ def test_the_schema_of_a_study_comes_from_its_name(name, schema):
 
 def test_a_long_name_gives_a_schema_that_is_taken():
     assert server_of(f"postgresql:///t?schema={schema_for('x' * 200)}").schema == "x" * LONGEST_SCHEMA
+
+
+def test_a_study_beside_another_has_its_name_and_a_suffix():
+    long = server_of(f"postgresql://db/robots?sslmode=require&schema={'a' * LONGEST_SCHEMA}")
+    assert beside(Path("runs/s.v1.db"), "_seed_2") == Path("runs/s.v1_seed_2.db")
+    assert str(beside(long.of_schema("s"), "_seed_2")) == "postgresql://db/robots?sslmode=require&schema=s_seed_2"
+    assert beside(long, "_seed_2").schema == "a" * (LONGEST_SCHEMA - 7) + "_seed_2"

@@ -16,7 +16,7 @@ import pytest
 
 from pareto_monoped.cli import _run as cli
 from pareto_monoped.definition.goals import constraints_of
-from pareto_monoped.definition.study import study_from_dict
+from pareto_monoped.definition.study import budgeted, study_from_dict
 from pareto_monoped.definition.study_file import Stop
 from pareto_monoped.definition.variables import Bounds
 from pareto_monoped.design import NAMES
@@ -28,7 +28,7 @@ from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, hypervolume
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.status import status
 from pareto_monoped.storage.store import Store
-from pareto_monoped.study.run import resume, run
+from pareto_monoped.study.run import resume, run, run_second, seed_of_second
 from pareto_monoped.study.simulator import load_simulator
 from tests.study.support import change, reseal
 
@@ -397,3 +397,40 @@ def test_a_disk_that_fills_up_loses_nothing(tmp_path, capsys):
     assert resume(tmp_path / "s.db", evaluations=stored + 50).new_evaluations == 50
     again = load_simulator(data.study, workers=2).evaluator(data.trials[list(NAMES)].to_numpy()[:50])
     assert np.array_equal(again.height_m, data.trials["height_m"][:50], equal_nan=True)
+
+
+def test_a_second_search_is_that_of_its_seed_is_continued_and_not_run_again(whole, tmp_path):
+    """Also after the first has got more evaluations than its file says; its own database stays as it is."""
+    path, db = tmp_path / "s.db", tmp_path / "s_seed_9.db"
+    first = run(made(), path, evaluations=80)
+    before = path.read_bytes()
+    stopped, found = run_second(first, made(), 9, progress=lambda _: True)
+    assert (stopped.db, stopped.stop_reason, found) == (db, "interrupted", None)
+    second, found = run_second(first, made(), 9)
+    assert (second.evaluations, second.evaluations - second.new_evaluations) == (80, stopped.evaluations)
+    plain = run(made(seed=9), tmp_path / "plain.db", evaluations=80)
+    assert read_study(db).trials[[*NAMES]].equals(plain.data.trials[[*NAMES]])
+    again, same = run_second(run(made(), path), made(), 9)
+    assert (again.new_evaluations, same) == (0, found)
+    assert path.read_bytes() == before
+
+
+def test_a_second_search_has_the_weights_iterations_of_the_first(tmp_path):
+    """The first ran on with a budget that its weights, shared out before, could not spend."""
+    weights = {"name": "weighted_cmaes", "height_weights": [0.3, 0.7]}
+    study = budgeted(made(evaluations=32, algorithm=weights), given=False, source="test")
+    run(study, tmp_path / "s.db")
+    first = run(study, tmp_path / "s.db", evaluations=80)
+    second = run_second(first, study, 2)[0]
+    assert (first.stop_reason, first.evaluations) == (second.stop_reason, second.evaluations) == ("exhausted", 32)
+
+
+@pytest.mark.parametrize(("given", "found"), [(True, 8), (0, 0), (2**63 - 1, 2**63 - 1)])
+def test_the_second_seed_is_the_next_one_or_that_given(given, found):
+    assert seed_of_second(7, given) == found
+
+
+def test_a_second_seed_that_is_the_studys_is_refused():
+    with pytest.raises(StudyError, match=r"second seed = 7: must be another one than the study's; give another"):
+        seed_of_second(7, 7)
+    assert seed_of_second(2**63 - 1, True) == 0

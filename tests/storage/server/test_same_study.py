@@ -11,7 +11,7 @@ from pareto_monoped.storage.place import place_of, storage_of
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.seals import ROWS
 from pareto_monoped.storage.status import status
-from pareto_monoped.study.run import resume, run
+from pareto_monoped.study.run import resume, run, run_second
 from tests.study.same import assert_same_study
 from tests.study.support import copied_database, made_database, made_evaluations, made_generation, made_study
 
@@ -96,6 +96,9 @@ def test_run_names_the_schema_after_the_study(cluster):
     summary = run(study, place_of(cluster.address()), evaluations=10)
     assert summary.db.schema == "named_so"
     assert len(read_study(summary.db).trials) == 10
+    second, found = run_second(summary, study, 7)
+    assert (second.db.schema, second.evaluations) == ("named_so_seed_7", 10)
+    assert found == run_second(summary, study, 7)[1]
 
 
 def test_settings_of_a_user_change_no_number(cluster, tmp_path, place):
