@@ -85,7 +85,8 @@ def second_search(first: Floats, second: Floats, corner: ReferencePoint, left: f
     """Compare the fronts of two searches, shapes (n, m) and (k, m) in stored units; the first has ``left`` to gain."""
     names, fronts = corner.objectives.names, (first, second)
     joined = hypervolume(np.concatenate(fronts), corner)
-    alone = [1.0 - hypervolume(other, corner) / joined if joined else 0.0 for other in (second, first)]
+    # Rounding may take a share below 0.
+    one, two = (max(0.0, 1.0 - hypervolume(o, corner) / joined) if joined else 0.0 for o in (second, first))
     heights: list[float] = []
     energies: list[tuple[float, float]] = []
     if len(names) == 2 and HEIGHT in names and {*names} & {*_ENERGIES} and len(first) and len(second):
@@ -94,12 +95,8 @@ def second_search(first: Floats, second: Floats, corner: ReferencePoint, left: f
         least, most = min(front[:, high].min() for front in fronts), min(front[:, high].max() for front in fronts)
         inner = np.unique(np.linspace(least, most, 7)[1:-1].round(2))
         heights = inner[inner <= most].tolist()
-        one, two = ([float(front[front[:, high] >= h, 1 - high].min()) for h in heights] for front in fronts)
-        energies = list(zip(one, two, strict=True))
+        reached = ([float(front[front[:, high] >= h, 1 - high].min()) for h in heights] for front in fronts)
+        energies = list(zip(*reached, strict=True))
     return SecondSearch(
-        hypervolume=joined,
-        alone=(alone[0], alone[1]),
-        heights_m=tuple(heights),
-        energies_j=tuple(energies),
-        left_to_gain=left,
+        hypervolume=joined, alone=(one, two), heights_m=tuple(heights), energies_j=tuple(energies), left_to_gain=left
     )

@@ -98,3 +98,10 @@ def test_fronts_without_designs_have_nothing_to_compare():
     assert second_search(nothing, nothing, CORNER, None).text().startswith("Neither search has a front")
     found = second_search(nothing, SECOND, CORNER, None)
     assert (found.alone, found.heights_m) == ((0.0, 1.0), ())
+
+
+def test_heights_that_rounding_takes_out_of_reach_are_left_out():
+    found = second_search(
+        np.array([[1.001, 40.0], [1.009, 41.0]]), np.array([[0.998, 39.0], [1.2, 60.0]]), CORNER, None
+    )
+    assert (found.heights_m, found.energies_j) == ((1.0,), ((40.0, 60.0),))
