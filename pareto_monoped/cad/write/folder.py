@@ -10,6 +10,7 @@ import re
 import secrets
 import shutil
 import signal
+import tempfile
 import threading
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -158,10 +159,11 @@ def chosen_formats(names: Sequence[str] | None) -> tuple[str, ...]:
 
 
 def require_free(out_dir: Path, *, force: bool) -> None:
-    """Refuse a place that must not be written to.
+    """Refuse a place that cannot or must not be written to, before work is done for it.
 
     Raises:
-        OutputError: a file, a folder that is not empty without ``force``, or one with foreign files in the way.
+        OutputError: a file, a folder that is not empty without ``force``, one with foreign files in the way, or one in
+            which nothing can be made.
         DiskError: the disk fails.
     """
     try:
@@ -170,6 +172,11 @@ def require_free(out_dir: Path, *, force: bool) -> None:
         filled = out_dir.is_dir() and any(out_dir.iterdir())
     except OSError as error:
         raise unwritable(out_dir, error, "give a folder that can be read and written") from error
+    nearest = next(folder for folder in out_dir.absolute().parents if folder.exists())
+    try:
+        tempfile.TemporaryDirectory(dir=nearest, prefix=f".{out_dir.name}-").cleanup()
+    except OSError as error:
+        raise unwritable(out_dir, error, "give a writable folder") from error
     if filled and not force:
         raise OutputError(
             f"output {str(out_dir)!r}: is not empty; give another folder, or {FORCE} to replace an export"

@@ -79,3 +79,12 @@ def test_what_is_no_record_of_an_export_is_foreign(tmp_path, text):
     filled(tmp_path, {RECORD: text})
     with pytest.raises(OutputError, match=r"'design.json' is not of an earlier export"):
         require_free(tmp_path, force=True)
+
+
+def test_a_place_where_nothing_can_be_made_is_refused_before_the_work(tmp_path):
+    """An export to a folder below a file, or of /proc, was refused only after a quarter of a minute."""
+    (tmp_path / "file").write_text("mine")
+    with pytest.raises(OutputError, match=r"cannot be written .*; give a writable folder"):
+        require_free(tmp_path / "file" / "new" / "robot", force=False)
+    require_free(tmp_path / "new" / "robot", force=False)
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
