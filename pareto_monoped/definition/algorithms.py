@@ -41,10 +41,10 @@ class SurrogateSettings(AlgorithmSettings):
     """Evolution that ranks many offspring by a cheap model and simulates the most promising."""
 
     name: Literal["surrogate"]
-    #: designs simulated in each of the first 50 generations; later ones have twice as many
+    #: designs simulated per generation; half as many at the beginning, twice as many after 50 generations
     population: Annotated[int, Field(ge=4, le=100_000)] = 40
     #: generations that are spread over the space before the model begins
-    drawn_generations: Annotated[int, Field(ge=1, le=1000)] = 3
+    drawn_generations: Annotated[int, Field(ge=1, le=1000)] = 2
     offspring: Annotated[int, Field(ge=2, le=100)] = 40  #: how many are ranked for each that is simulated
     crossover_eta: Annotated[float, Field(ge=3.0, le=30.0)] = 15.0  #: of simulated binary crossover
     mutation_eta: Annotated[float, Field(ge=3.0, le=30.0)] = 20.0  #: of polynomial mutation

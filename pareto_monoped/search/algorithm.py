@@ -23,10 +23,12 @@ MOTOR_OF = {"motor": ("hip", "knee"), "hip_motor": ("hip",), "knee_motor": ("kne
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gear:
-    """What a search knows of a gearbox: its real ratio and its mass."""
+    """What a search knows of a gearbox."""
 
-    ratio: float
+    ratio: float  #: the real one
     mass_kg: float
+    efficiency: float
+    reflected_inertia_kg_m2: float  #: at the output
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""Predict the scores of designs by a polynomial corrected by its errors near by, and rank what is worth simulating."""
+"""Predict the scores of designs from those of simulated ones, and rank what is worth simulating."""
 
 from functools import cached_property
 
@@ -9,7 +9,7 @@ from scipy.spatial.distance import cdist
 
 from pareto_monoped.search.algorithm import Floats
 from pareto_monoped.search.archive import Archive, Standing, shortfall
-from pareto_monoped.search.response_surface import Features, fitted, terms
+from pareto_monoped.search.response_surface import Features, GaussianProcess, fitted, terms
 
 _TRAINING = 1700
 """Points that the polynomial is fitted to, eight per term of nine features. Our own choice; more takes longer and was
@@ -47,14 +47,24 @@ many as a search of 1,000 designs can determine, and one of 30 has 5,456."""
 class Prediction:
     """Expected costs and missed constraints of designs, from all that have been simulated.
 
-    A weighted polynomial follows the course of the measures. In each part of the front, its errors at the latest
-    designs there are interpolated by simple kriging with the Matérn kernel of smoothness 3/2 (Rasmussen and Williams
-    2006, equations 2.25 and 4.17), so that predictions close to simulated designs are as good as exact.
+    A Gaussian process makes the most of few designs. For more, a weighted polynomial follows the course of
+    the measures. In each part of the front, its errors at the latest designs there are interpolated by simple kriging
+    with the Matérn kernel of smoothness 3/2 (Rasmussen and Williams 2006, equations 2.25 and 4.17), so that predictions
+    close to simulated designs are as good as exact.
     """
 
     def __init__(self, archive: Archive, standing: Standing, features: Features) -> None:
         """Fit the model to an archive."""
         self._features, self._points, self._standing = features, archive.points, standing
+        self._smooth = features.smooth
+        # Which jumps fail is learned from all trials, wherever they are.
+        jumped: NDArray[np.bool_] = np.asarray(np.isfinite(standing.costs).all(axis=1))
+        self._known = np.flatnonzero(jumped)  # in the order of the trials
+        self._risk: Floats | None = None
+        if not jumped.all():
+            self._risk = fitted(
+                self._terms(self._points, 2), (~jumped[:, None]).astype(np.float64), np.ones(len(jumped))
+            )
         # In the order of the trials, whatever the weights: a sum in another order has other last digits.
         rows = np.sort(_training(standing.order))
         missed = archive.constraints
@@ -62,33 +72,41 @@ class Prediction:
         # Far beyond a limit, the order of magnitude says which way to go.
         missed = np.where(missed > 0.0, np.log1p(np.maximum(missed, 0.0)), missed)
         self._targets = np.hstack((standing.costs, missed))
-        self._mean = self._targets[rows].mean(axis=0)
         self._objectives = standing.costs.shape[1]
+        self._process: GaussianProcess | None = None
+        if archive.few:
+            self._process = GaussianProcess(self._points[self._known], self._targets[self._known])
+            return
+        self._mean = self._targets[rows].mean(axis=0)
         weights = np.exp(-standing.behind[rows] / _NEARNESS) + _LEAST_WEIGHT
-        self._degree = 3 if self._points.shape[1] <= _CUBIC_UP_TO else 2
-        products = terms(self._points[rows], self._degree)
+        self._degree = 3 if self._smooth <= _CUBIC_UP_TO else 2
+        products = self._terms(self._points[rows], self._degree)
         self._coefficients = fitted(products, self._targets[rows] - self._mean, weights)
-        # Which jumps fail is learned from all trials, wherever they are.
-        jumped: NDArray[np.bool_] = np.asarray(np.isfinite(standing.costs).all(axis=1))
-        self._known = np.flatnonzero(jumped)  # in the order of the trials
-        self._risk: Floats | None = None
-        if not jumped.all():
-            self._risk = fitted(terms(self._points, 2), (~jumped[:, None]).astype(np.float64), np.ones(len(jumped)))
 
     @property
     def determined(self) -> bool:
-        """Whether the polynomial is fitted to as many designs as it has terms; far from them it guesses if not."""
-        return len(self._known) >= len(self._coefficients)
+        """Whether a polynomial is fitted to as many designs as it has terms; far from them it guesses if not."""
+        return self._process is not None or len(self._known) >= len(self._coefficients)
 
     def rough(self, values: Floats) -> tuple[Floats, Floats]:
         """Return costs, shape (n, m), as ``Standing`` has them, and what they miss, (n,), by the trend."""
         points = self._features.scaled(values)
         return self._split(points, self._trend(points))
 
+    def hoped(self, values: Floats) -> tuple[Floats, Floats]:
+        """Return the same, better by a standard deviation where it is known: what exploring may find."""
+        points = self._features.scaled(values)
+        hoped = self._trend(points)
+        if self._process is not None:
+            hoped -= self._process.deviation(points)
+        return self._split(points, hoped)
+
     def fine(self, values: Floats) -> tuple[Floats, Floats]:
         """Return the same with the trend's errors corrected in the part of the front that a design seems to be in."""
         points = self._features.scaled(values)
         predicted = self._trend(points)
+        if self._process is not None:
+            return self._split(points, predicted)
         parts = self._standing.parts(predicted[:, : self._objectives])
         for part in np.unique(parts).tolist():
             known, shares = self._corrections[part]
@@ -96,13 +114,18 @@ class Prediction:
         return self._split(points, predicted)
 
     def _trend(self, points: Floats) -> Floats:
-        predicted: Floats = terms(points, self._degree) @ self._coefficients + self._mean
+        if self._process is not None:
+            return self._process.mean(points)
+        predicted: Floats = self._terms(points, self._degree) @ self._coefficients + self._mean
         return predicted
+
+    def _terms(self, points: Floats, degree: int) -> Floats:
+        return terms(points[:, : self._smooth], degree)
 
     def _split(self, points: Floats, predicted: Floats) -> tuple[Floats, Floats]:
         violation = np.maximum(predicted[:, self._objectives :], 0.0).sum(axis=1)
         if self._risk is not None:
-            violation += np.maximum(terms(points, 2) @ self._risk - _RISK, 0.0)[:, 0]
+            violation += np.maximum(self._terms(points, 2) @ self._risk - _RISK, 0.0)[:, 0]
         return predicted[:, : self._objectives], violation
 
     @cached_property
@@ -195,7 +218,7 @@ def unlike(
     away = cdist(points, known).min(axis=1)
     chosen: list[int] = []
     for _ in range(min(count, len(points))):
-        worth = gain + curiosity * np.minimum(away, 1.0)
+        worth = gain + curiosity * away
         worth[chosen] = -np.inf
         chosen.append(int(worth.argmax()))
         away = np.minimum(away, cdist(points, points[chosen[-1:]])[:, 0])

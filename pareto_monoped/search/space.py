@@ -187,7 +187,14 @@ def gear_list(actuator_map: ActuatorMap, bounds: Bounds) -> tuple[Gear, ...]:
     for index in chosen[chosen >= 0]:
         actuator = actuator_map.entries[index].actuator
         assert actuator is not None
-        gears.append(Gear(ratio=actuator.ratio, mass_kg=actuator.mass_kg))
+        gears.append(
+            Gear(
+                ratio=actuator.ratio,
+                mass_kg=actuator.mass_kg,
+                efficiency=actuator.efficiency,
+                reflected_inertia_kg_m2=actuator.reflected_inertia_kg_m2,
+            )
+        )
     return tuple(sorted(gears, key=lambda gear: gear.ratio))
 
 

@@ -116,7 +116,7 @@ def ends_of_least_tried(
             designs.append(near)
             away = cdist(features.scaled(near), archive.points).min(axis=1)
             worth = -standing.scaled(costs)[:, objective] - PENALTY * violation
-            promise.append(worth + CURIOSITY * np.minimum(away, 1.0))
+            promise.append(worth + CURIOSITY * away)
             best = near[promise[-1].argmax()][None]
         yield np.vstack(designs)[np.argsort(-np.concatenate(promise), kind="stable")]
 
@@ -145,21 +145,20 @@ a corner far from all others, and polynomials are determined best by points ther
 _ANYWHERE = 1000
 """Designs anywhere in the space from which explorers are chosen and climbs begin. Our own choice."""
 _EXPLORING = 0.1
-"""Share of what the model chooses that explores. Our own choice: without it, some searches miss a part of the front
-that lies far from the rest in the space."""
+"""Share of what the model chooses that explores, half of it where no explorer holds the limits. Our own choice: without
+it, some searches miss a part of the front that lies far from the rest in the space."""
 _SEEKING = 0.5
 """The same as long as no design holds the limits. Our own choice: the least violation near by may be that of the wrong
 gearboxes."""
 
-_PLAIN = 0.2
-"""Share of plain evolution, which the model does not rank, when the model begins. Our own choice."""
 _PLAIN_ENDS = (0.1, 0.95)
-"""Least and greatest share of it. Our own choice: each side keeps a few designs, or what it gains is not seen."""
+"""Least and greatest share of plain evolution, which the model does not rank. Our own choice: each side keeps a few
+designs, or what it gains is not seen."""
+_REMEMBERED = 0.8
+"""Weight of all earlier generations in it, against 1 of the last: it follows about the last five. Our own choice."""
 _HELD = 0.7
 """Share of what the model chooses that holds the limits, below which half as much is tolerated next time, above which
 twice as much. Our own choice: near what is left beside explorers, of which few hold tight limits."""
-_LEARNING = 0.1
-"""Weight of a new generation in that share: it follows the gains of about the last ten. Our own choice."""
 _CLIMBS = 6
 """Climbs that begin anywhere; as many begin on the front, and half as many close to it. Our own choice."""
 _CLOSE = 1000
@@ -168,9 +167,9 @@ _CLOSE = 1000
 _OF_A_MOTOR = 2
 """Designs of the least tried motor per generation and objective. Our own choice, see ``ends_of_least_tried``."""
 
-_SMALLER = 4
-"""What a population is divided by as long as no design holds the limits. Our own choice: the model errs most then, and
-learns from every generation."""
+_SMALLER = (2, 4)
+"""What a population is divided by while a Gaussian process predicts, and later as long as no design holds the limits.
+Our own choice: the model errs most then, and learns from every generation."""
 
 _FEW = 50
 """Generations of the population's own size. Our own choice: 2,000 designs with the default population."""
@@ -214,8 +213,11 @@ class SurrogateSearch(Algorithm):
         self._standing = self._archive.standing()
         self._features: Features = features_of(space)
         self._asked = np.zeros((0, len(space.names)))
-        self._plain = 0  # designs of plain evolution, the last of those asked for
-        self._plain_share, self._tolerated = _PLAIN, TOLERATED
+        # explorers, and designs of plain evolution: the last of those asked for
+        self._explorers, self._plain = 0, 0
+        self._held = 1.0  # share of the last explorers that hold the limits
+        self._gains = np.ones(2)  # of the model's designs and of plain ones, as shares of both
+        self._tolerated = TOLERATED
         self._drawing = True  # whether designs are still spread over the space
 
     @property
@@ -224,11 +226,21 @@ class SurrogateSearch(Algorithm):
         return 1 if self._generation < _FEW else _LARGER
 
     @property
+    def _plain_share(self) -> float:
+        """Share of the next generation that is plain evolution; it follows the square of what either side gains."""
+        model, plain = self._gains**2
+        return float(min(max(plain / (model + plain), _PLAIN_ENDS[0]), _PLAIN_ENDS[1]))
+
+    @property
     def _size(self) -> int:
         """Designs of the next generation."""
-        if self._drawing or len(self._standing.front):
+        if self._drawing:
+            return self._settings.population
+        if self._archive.few:
+            return max(1, self._settings.population // _SMALLER[0])
+        if len(self._standing.front):
             return self._settings.population * self._times
-        return max(1, self._settings.population // _SMALLER)
+        return max(1, self._settings.population // _SMALLER[1])
 
     def ask(self) -> Proposal | None:
         """Return designs spread over the space, later the most promising offspring; None if there is no new design."""
@@ -236,7 +248,7 @@ class SurrogateSearch(Algorithm):
         standing = self._standing = self._archive.standing(self._tolerated)
         if self._generation == self._settings.drawn_generations or (self._generation and len(standing.front) == 0):
             self._drawing = False  # where no drawn design holds the limits, drawing more rarely finds one
-        self._plain, size = 0, self._size
+        self._plain, self._explorers, size = 0, 0, self._size
         if self._generation == 0 and self._space.begin is not None:
             chosen = self._space.begin()[:size]
         elif self._drawing or len(standing.order) == 0:
@@ -260,10 +272,13 @@ class SurrogateSearch(Algorithm):
         if self._plain and by_model:
             model = self._archive.gained(scores.of(slice(by_model))) / by_model
             plain = self._archive.gained(scores.of(slice(by_model, None))) / self._plain
-            if model + plain > 0.0:
-                share = self._plain_share + _LEARNING * (plain / (model + plain) - self._plain_share)
-                self._plain_share = min(max(share, _PLAIN_ENDS[0]), _PLAIN_ENDS[1])
+            both = model + plain
+            self._gains = _REMEMBERED * self._gains + (np.array((model, plain)) / both if both > 0.0 else 0.5)
             if len(self._standing.front):
+                explorers = scores.violation[by_model - self._explorers : by_model]
+                self._held += (1.0 - _REMEMBERED) * (
+                    float(np.mean(explorers == 0.0)) - self._held if self._explorers else 0.0
+                )
                 held = float(np.mean(scores.violation[:by_model] == 0.0))
                 self._tolerated = min(self._tolerated * (2.0 if held > _HELD else 0.5), TOLERATED)
         self._add(self._asked, scores)
@@ -273,7 +288,8 @@ class SurrogateSearch(Algorithm):
         """Return all but the designs, which are in the database."""
         return {
             "generation": self._generation,
-            "plain_share": self._plain_share,
+            "gains": self._gains.tolist(),
+            "held": self._held,
             "tolerated": self._tolerated,
             "drawing": self._drawing,
         }
@@ -283,8 +299,9 @@ class SurrogateSearch(Algorithm):
         for values, scores in history:
             self._add(values, scores)
         self._generation = int(state["generation"])
-        # Earlier versions stored the number alone.
-        self._plain_share = float(state.get("plain_share", _PLAIN))
+        # Earlier versions stored less.
+        self._gains = np.array(state.get("gains", self._gains), dtype=np.float64)
+        self._held = float(state.get("held", self._held))
         self._tolerated = float(state.get("tolerated", TOLERATED))
         self._drawing = bool(state.get("drawing", self._generation < self._settings.drawn_generations))
 
@@ -315,10 +332,11 @@ class SurrogateSearch(Algorithm):
         values = np.vstack((best, small_steps(self._space, best, _STEPS, generator)))
         values = values[self._seen.new(values)]
         costs, violation = prediction.fine(values)
-        explorers, count = values[:0], round((_EXPLORING if len(standing.front) else _SEEKING) * (size - len(plain)))
+        exploring = 0.5 * (1.0 + self._held) * _EXPLORING if len(standing.front) else _SEEKING
+        explorers, count = values[:0], round(exploring * (size - len(plain)))
         known = self._archive.points
         anywhere = np.vstack([spread(self._space, _ANYWHERE // 2, generator, share) for share in _ON_BOUND])
-        expected = prediction.rough(anywhere)
+        expected = prediction.hoped(anywhere)
         if prediction.determined or len(standing.front) == 0:
             start = self._starts(anywhere[ranked(*expected, standing)], standing, generator)
             climbed = climbs(self._space, start, prediction, standing, generator)
@@ -338,7 +356,7 @@ class SurrogateSearch(Algorithm):
         new = self._seen.new(np.vstack((others, values)))
         fresh = new[len(others) :]
         values, costs, violation = values[fresh], costs[fresh], violation[fresh]
-        self._plain = len(plain)
+        self._plain, self._explorers = len(plain), len(others) - len(plain)
         left = max(size - len(others), 0)
         if len(standing.front):
             return np.vstack((values[ranked(costs, violation, standing)[:left]], others))

@@ -259,7 +259,7 @@ SETTINGS = {
         f"its energy balance closes to {100.0 * LIMITS['energy_balance_error']:g} %, the audit would find nothing",
         f"a jump of {100.0 * (MIN_HEIGHT_M - BASE_START_HEIGHT_M):.0f} cm, unless",
         f"are at least {LEAST_SAFETY:g}. Each is the least factor",
-        f"each of its terms, {int(2.5 * surrogate._CLIMBS)} designs also climb",
+        f"bound end on it. {int(2.5 * surrogate._CLIMBS)} designs also climb",
         f"with the study: {CASE_C.values[0]:g} m and {CASE_C.values[1]:g} J by default",
         f"The upper bound {UPPER[NAMES.index('knee_ratio')]:g} includes the gearbox of the interval "
         f"[{UPPER[NAMES.index('knee_ratio')]:g}, {UPPER[NAMES.index('knee_ratio')] + ratiomap.RATIO_STEP:g})",
@@ -271,12 +271,12 @@ SETTINGS = {
         {(10, 2): "of the ten perturbed copies of a design, two jump first"}[
             signature(audit.audit).parameters["perturbations"].default, audit.FIRST_COPIES
         ],
-        {(3, 3): "begins with three generations spread over the space"}[
+        {(2, 3): "begins with two generations spread over the space"}[
             SurrogateSettings(name="surrogate").drawn_generations, surrogate._ROUNDS
         ],
+        f"Up to {archive._FEW_DESIGNS} designs, the model is a Gaussian process",
         {0.1: "A tenth of these explores"}[surrogate._EXPLORING],
-        {0.2: "At first it is a fifth"}[surrogate._PLAIN],
-        {(4, 0.5): "Generations are then a quarter as large"}[surrogate._SMALLER, surrogate._SEEKING],
+        {((2, 4), 0.5): "Generations are then a quarter as large"}[surrogate._SMALLER, surrogate._SEEKING],
         {0.01: "At most a percent is tolerated"}[archive.TOLERATED],
         {0.1: "an expected risk of more than a tenth"}[prediction._RISK],
         {0.2: "when a fifth of its jumps failed"}[remarks._MANY_FAIL],

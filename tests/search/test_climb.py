@@ -10,12 +10,13 @@ from pareto_monoped.search.prediction import Prediction, gains
 from pareto_monoped.search.response_surface import features_of
 from pareto_monoped.search.surrogate import climbs
 from pareto_monoped.search.variation import spread
+from tests.search.gears import ALIKE
 
 SPACE = Space(
     names=("thigh_length_m", "knee_ratio", "damping_n_s_per_m", "torsional_stiffness_n_m_per_rad"),
     lower=np.array([0.3, 0.0, 0.0, 0.0]),
     upper=np.array([0.5, 7.0, 10.0, 50.0]),
-    gears={"knee_ratio": tuple(Gear(ratio=4.0 + 0.5 * k, mass_kg=0.5) for k in range(8))},
+    gears={"knee_ratio": tuple(Gear(ratio=4.0 + 0.5 * k, mass_kg=0.5, **ALIKE) for k in range(8))},
 )
 
 

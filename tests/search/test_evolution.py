@@ -9,8 +9,9 @@ from pareto_monoped.definition.algorithms import EvolutionSettings
 from pareto_monoped.pareto.objectives import Objectives
 from pareto_monoped.search.algorithm import Gear, MotorChoice, MotorKind, Scores, Space
 from pareto_monoped.search.evolution import Evolution
+from tests.search.gears import ALIKE
 
-GEARS = tuple(Gear(ratio=4.0 + k, mass_kg=0.5) for k in range(6))
+GEARS = tuple(Gear(ratio=4.0 + k, mass_kg=0.5, **ALIKE) for k in range(6))
 MOTORS = tuple(
     MotorKind(name=name, peak_torque_n_m=1.0, no_load_speed_rad_per_s=40.0, gears={"knee_ratio": GEARS[:count]})
     for name, count in (("A", 4), ("B", 6))

@@ -190,7 +190,7 @@ def test_every_algorithm_asks_for_points_of_the_space_and_for_none_twice(name):
     study = several(ALL, algorithm={"name": name, "population": 20})
     _, history = search(study)
     values, space = np.vstack([asked for asked, _ in history]), of_all().space
-    assert len(values) == 120
+    assert len(values) == (80 if name == "surrogate" else 120)  # whose generations begin with half as many
     assert np.array_equal(space.snap(values), values)
     assert len({row.tobytes() for row in values}) == len(values)
     assert len(set(values[:20, -1])) > 3

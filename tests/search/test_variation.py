@@ -5,10 +5,11 @@ import pytest
 
 from pareto_monoped.search.algorithm import Gear, MotorChoice, MotorKind, Space
 from pareto_monoped.search.variation import scans, spread
+from tests.search.gears import ALIKE
 
 
 def gears(*ratios):
-    return tuple(Gear(ratio=ratio, mass_kg=0.4 + 0.01 * ratio) for ratio in ratios)
+    return tuple(Gear(ratio=ratio, mass_kg=0.4 + 0.01 * ratio, **ALIKE) for ratio in ratios)
 
 
 SPACE = Space(
