@@ -1,7 +1,7 @@
 """The default search and NSGA-II where limits are tight, jumps fail or variables are many, and what is left to gain.
 
     python benchmarks/search_limits.py          # a short look: 400 jumps each, two seeds
-    python benchmarks/search_limits.py --full   # seeds 21 to 23: the table of benchmarks/search_landscapes.md
+    python benchmarks/search_limits.py --full   # seeds 61 to 70: the table of benchmarks/search_landscapes.md
 
 The last column is what ``left_to_gain`` expects after a quarter of the jumps, over what the rest of them then gained.
 """
@@ -20,12 +20,19 @@ from pareto_monoped.study.run import run
 
 WIDE = Path(__file__).parents[1] / "studies" / "wide.toml"
 TIGHT = {"height_m": {"min": 1.0}, "energy_j": {"max": 35.0}, "peak_gear_torque_knee_n_m": {"max": 33.0}}
+OPTIONAL = {
+    "knee_release_rad": {"lower": 0.0, "upper": 0.6},
+    "rest_length_m": {"lower": 1.0, "upper": 20.0},
+    "start_height_m": {"lower": 0.4, "upper": 0.6},
+}
 #: Jumps of each search, and the study's other keys. Ten knots per joint make 25 variables.
 STUDIES: dict[str, tuple[int, dict[str, Any]]] = {
     "Case C": (2000, {"case": "C"}),
     "Case C within tight limits": (1000, {"case": "C", "constraints": TIGHT}),
     "`wide.toml`": (1500, tomllib.loads(WIDE.read_text(encoding="utf-8"))),
     "torque over time": (1500, {"controller": {"kind": "torque_over_time", "knots": 10}}),
+    "MAD_M6C12": (2000, {"case": "C", "motor": "MAD_M6C12"}),
+    "ten variables": (4000, {"variables": OPTIONAL}),
 }
 
 
@@ -59,9 +66,9 @@ def spread(values: list[float], digits: int) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--full", action="store_true", help="1,000 to 2,000 jumps each, seeds 21 to 23")
+    parser.add_argument("--full", action="store_true", help="1,000 to 4,000 jumps each, seeds 61 to 70")
     full = parser.parse_args().full
-    seeds = range(21, 24) if full else (1, 2)
+    seeds = range(61, 71) if full else (1, 2)
     print(
         "| study | jumps | hypervolume, `surrogate` | `nsga2` | within all limits, %, `surrogate` | `nsga2` "
         "| expected over gained |\n|---|---:|---|---|---|---|---|"

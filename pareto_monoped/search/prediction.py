@@ -47,8 +47,8 @@ many as a search of 1,000 designs can determine, and one of 30 has 5,456."""
 class Prediction:
     """Expected costs and missed constraints of designs, from all that have been simulated.
 
-    A Gaussian process makes the most of few designs. For more, a weighted polynomial follows the course of
-    the measures. In each part of the front, its errors at the latest designs there are interpolated by simple kriging
+    A Gaussian process makes the most of few designs. For more, a weighted polynomial follows the course of the
+    measures. In each part of the front, its errors at the latest designs there are interpolated by simple kriging
     with the Matérn kernel of smoothness 3/2 (Rasmussen and Williams 2006, equations 2.25 and 4.17), so that predictions
     close to simulated designs are as good as exact.
     """

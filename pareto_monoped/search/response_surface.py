@@ -37,7 +37,7 @@ class Features:
     speed at the joint, which mean the same with every motor. Trials with one motor thus tell of designs with another.
 
     Behind all these stand a gearbox's efficiency and the logarithm of its inertia at the motor, which zigzag along the
-    list: they tell gearboxes apart where designs are compared (``alike``), and are no terms of the polynomial.
+    list: they tell gearboxes apart where a model asks how alike two designs are, and are no terms of the polynomial.
     """
 
     space: Space  #: that is searched

@@ -109,7 +109,8 @@ def test_no_public_record_floods_a_notebook(db):
     made += [stored.study, stored.design(0), pm.load_motor("U8"), pm.load_calibration(), pm.PAPER_CASES["C"]]
     made += [pm.MonopedProblem(stored.study), pm.OptunaObjective(stored.study), *stored.alternatives(0)]
     made += [pm.VARIABLES[0], pm.MEASURES[0], pm.verify(db), pm.Export("leg", {"mass_kg": 4.7, "files": ["a"] * 1000})]
-    pm.run(pm.Study.define(**STUDY), db.with_name("again.db"), callback=lambda now: made.append(now))
+    study, again = pm.Study.define(**STUDY), db.with_name("again.db")
+    made.append(pm.run(study, again, callback=lambda now: made.append(now), second_seed=True).second)
     public = {value for name in pm.__all__ if isinstance(value := getattr(pm, name), type)}
     errors = {one for one in public if issubclass(one, pm.ParetoMonopedError)}
     assert public - {type(one) for one in made} == errors | {pm.OwnLaw}  # which are base classes

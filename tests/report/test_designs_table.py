@@ -42,7 +42,7 @@ def read(text: str) -> list[pd.DataFrame]:
 def test_the_plain_table_has_the_front_with_both_energies(payload, data):
     (table,) = read(designs_table(payload))
     front = data.front()
-    assert len(front) <= MOST_ROWS
+    front = front.iloc[evenly(list(range(len(front))), MOST_ROWS)]
     assert table["trial"].astype(int).tolist() == front["trial"].tolist()
     for name, title, scale, decimals in (
         ("height_m", "height, m", 1.0, 3),
@@ -73,7 +73,7 @@ def test_without_a_front_there_is_a_sentence(payload):
 def test_each_study_has_its_table_under_its_name(both):
     payload = both
     text = designs_table(payload)
-    assert [len(table) for table in read(text)] == [len(card.front) for card in payload.studies]
+    assert [len(table) for table in read(text)] == [min(len(card.front), MOST_ROWS) for card in payload.studies]
     assert all(f"{card.label}: All" in text for card in payload.studies)
 
 
