@@ -275,10 +275,9 @@ class SurrogateSearch(Algorithm):
             both = model + plain
             self._gains = _REMEMBERED * self._gains + (np.array((model, plain)) / both if both > 0.0 else 0.5)
             if len(self._standing.front):
-                explorers = scores.violation[by_model - self._explorers : by_model]
-                self._held += (1.0 - _REMEMBERED) * (
-                    float(np.mean(explorers == 0.0)) - self._held if self._explorers else 0.0
-                )
+                explored = scores.violation[max(by_model - self._explorers, 0) : by_model]
+                if self._explorers:
+                    self._held += (1.0 - _REMEMBERED) * (float(np.mean(explored == 0.0)) - self._held)
                 held = float(np.mean(scores.violation[:by_model] == 0.0))
                 self._tolerated = min(self._tolerated * (2.0 if held > _HELD else 0.5), TOLERATED)
         self._add(self._asked, scores)

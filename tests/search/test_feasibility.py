@@ -181,3 +181,19 @@ def test_what_a_generation_gains_is_the_hypervolume_that_it_adds():
     barren.add(np.vstack((SPACE.lower, SPACE.upper)), replace(two, violation=np.array([0.5, 0.8])))
     barren.standing()
     assert barren.gained(replace(two, violation=np.array([0.3, 0.6]))) == pytest.approx(0.2)
+
+
+def test_fewer_explorers_where_none_holds_the_limits_and_as_many_where_all_do():
+    """A tenth of the model's designs explores; of tight limits, explorers hold none, and half as many are as good."""
+    algorithm = SurrogateSearch(SPACE, SETTINGS, 5)
+    for _ in range(3):
+        algorithm.tell(scored(algorithm.ask().values))
+    held = []
+    for missed in (0.5, 0.5, -0.1, -0.1):
+        scores = scored(algorithm.ask().values)
+        # More than the model's designs: some that were chosen had been asked for before.
+        algorithm._explorers = len(scores.values) - algorithm._plain + 1
+        violation = np.full(len(scores.values), max(missed, 0.0))
+        algorithm.tell(replace(scores, violation=violation, constraints=np.full((len(violation), 1), missed)))
+        held.append(algorithm.state()["held"])
+    assert held == pytest.approx([0.8, 0.64, 0.712, 0.7696])
