@@ -56,7 +56,6 @@ class Prediction:
     def __init__(self, archive: Archive, standing: Standing, features: Features) -> None:
         """Fit the model to an archive."""
         self._features, self._points, self._standing = features, archive.points, standing
-        self._smooth = features.smooth
         # Which jumps fail is learned from all trials, wherever they are.
         jumped: NDArray[np.bool_] = np.asarray(np.isfinite(standing.costs).all(axis=1))
         self._known = np.flatnonzero(jumped)  # in the order of the trials
@@ -79,7 +78,7 @@ class Prediction:
             return
         self._mean = self._targets[rows].mean(axis=0)
         weights = np.exp(-standing.behind[rows] / _NEARNESS) + _LEAST_WEIGHT
-        self._degree = 3 if self._smooth <= _CUBIC_UP_TO else 2
+        self._degree = 3 if features.smooth <= _CUBIC_UP_TO else 2
         products = self._terms(self._points[rows], self._degree)
         self._coefficients = fitted(products, self._targets[rows] - self._mean, weights)
 
@@ -120,7 +119,7 @@ class Prediction:
         return predicted
 
     def _terms(self, points: Floats, degree: int) -> Floats:
-        return terms(points[:, : self._smooth], degree)
+        return terms(points[:, : self._features.smooth], degree)
 
     def _split(self, points: Floats, predicted: Floats) -> tuple[Floats, Floats]:
         violation = np.maximum(predicted[:, self._objectives :], 0.0).sum(axis=1)

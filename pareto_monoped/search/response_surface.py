@@ -180,7 +180,7 @@ class GaussianProcess:
             inverse, nugget = np.exp(-2.0 * fit[:-1]), np.exp(fit[-1])
             distance = np.sqrt(5.0 * (squares @ inverse)).reshape(count, count)
             decay = np.exp(-distance)
-            alike = (1.0 + distance + distance**2 / 3.0) * decay
+            alike = _matern(distance)
             alike[np.diag_indices(count)] += nugget
             factor = cho_factor(alike, lower=True)
             shares = cho_solve(factor, known)
@@ -217,4 +217,9 @@ class GaussianProcess:
 
     def _alike(self, points: Floats) -> Floats:
         distance = np.sqrt(5.0) * cdist(points * self._inverse, self._points)
-        return np.asarray((1.0 + distance + distance**2 / 3.0) * np.exp(-distance))
+        return _matern(distance)
+
+
+def _matern(distance: Floats) -> Floats:
+    """Return Matérn's kernel of smoothness 5/2 at distances times the root of 5."""
+    return np.asarray((1.0 + distance + distance**2 / 3.0) * np.exp(-distance))

@@ -172,8 +172,8 @@ def require_free(out_dir: Path, *, force: bool) -> None:
         filled = out_dir.is_dir() and any(out_dir.iterdir())
     except OSError as error:
         raise unwritable(out_dir, error, "give a folder that can be read and written") from error
-    nearest = next(folder for folder in out_dir.absolute().parents if folder.exists())
     try:
+        nearest = next(folder for folder in out_dir.absolute().parents if folder.exists())
         tempfile.TemporaryDirectory(dir=nearest, prefix=f".{out_dir.name}-").cleanup()
     except OSError as error:
         raise unwritable(out_dir, error, "give a writable folder") from error
