@@ -201,25 +201,19 @@ def _in_turns(parts: NDArray[np.intp]) -> NDArray[np.intp]:
     return np.argsort(turns, kind="stable")
 
 
-def unlike(
-    costs: Floats,
-    violation: Floats,
-    standing: Standing,
-    points: Floats,
-    known: Floats,
-    count: int,
-    curiosity: float = CURIOSITY,
-) -> list[int]:
-    """Choose rows of ``count`` of n designs that promise much and are far from ``known`` features and each other."""
-    gain = gains(costs, violation, standing)
-    looked_at = np.argsort(-gain, kind="stable")[: count * _LOOKED_AT]
-    points, gain = points[looked_at], gain[looked_at]
+def unlike(worth: Floats, points: Floats, known: Floats, count: int, curiosity: float = CURIOSITY) -> list[int]:
+    """Choose ``count`` of n rows that are worth much and far from ``known`` features and each other.
+
+    ``worth`` has shape (n,), ``points`` and ``known`` are features, shapes (n, f) and (k, f).
+    """
+    looked_at = np.argsort(-worth, kind="stable")[: count * _LOOKED_AT]
+    points, worth = points[looked_at], worth[looked_at]
     away = cdist(points, known).min(axis=1)
     chosen: list[int] = []
     for _ in range(min(count, len(points))):
-        worth = gain + curiosity * away
-        worth[chosen] = -np.inf
-        chosen.append(int(worth.argmax()))
+        attraction = worth + curiosity * away
+        attraction[chosen] = -np.inf
+        chosen.append(int(attraction.argmax()))
         away = np.minimum(away, cdist(points, points[chosen[-1:]])[:, 0])
     best: list[int] = looked_at[chosen].tolist()
     return best

@@ -146,7 +146,8 @@ _ANYWHERE = 1000
 """Designs anywhere in the space from which explorers are chosen and climbs begin. Our own choice."""
 _EXPLORING = 0.1
 """Share of what the model chooses that explores, half of it where no explorer holds the limits. Our own choice: without
-it, some searches miss a part of the front that lies far from the rest in the space."""
+it, some searches miss a part of the front that lies far from the rest in the space. Where explorers had to promise a
+gain, too, 9 of 20 searches of Case C found the hip's jumps at 1.08 m with 2,000 designs; now 16 do."""
 _SEEKING = 0.5
 """The same as long as no design holds the limits. Our own choice: the least violation near by may be that of the wrong
 gearboxes."""
@@ -192,10 +193,11 @@ class SurrogateSearch(Algorithm):
     The first generations are spread over the space, half of them over its bounds and corners, too. Later generations
     vary the designs on the front and predict the offspring's scores (``Prediction``). The most promising are varied
     again in small steps, and, once the model has a design for each of its terms, some climb (``climbs``): from
-    anywhere, from the front and close to it. Of all these, the search asks for those that gain most over the front, the
-    best of each part of it first; without a front, for those that miss the limits least and are unlike each other. Some
-    explore far from all simulated designs. A share is plain evolution, the greater, the more that gains beside what the
-    model chooses. Where motors are chosen, the motor with the fewest designs gets some at the ends of its own front
+    anywhere, from the front, its ends first, and close to it. Of all these, the search asks for those that gain most
+    over the front, the best of each part of it first; without a front, for those that miss the limits least and are
+    unlike each other. Some explore far from all simulated designs, where limits are expected to hold, whatever gain is
+    expected there. A share is plain evolution, the greater, the more that gains beside what the model chooses. Where
+    motors are chosen, the motor with the fewest designs gets some at the ends of its own front
     (``ends_of_least_tried``).
 
     Every generation has its own random generator, whose seed follows from the study's. The simulated designs and a few
@@ -334,7 +336,7 @@ class SurrogateSearch(Algorithm):
         exploring = 0.5 * (1.0 + self._held) * _EXPLORING if len(standing.front) else _SEEKING
         explorers, count = values[:0], round(exploring * (size - len(plain)))
         known = self._archive.points
-        anywhere = np.vstack([spread(self._space, _ANYWHERE // 2, generator, share) for share in _ON_BOUND])
+        anywhere = np.vstack([spread(self._space, _ANYWHERE // 2, generator, share) for share in _ON_BOUND[::-1]])
         expected = prediction.hoped(anywhere)
         if prediction.determined or len(standing.front) == 0:
             start = self._starts(anywhere[ranked(*expected, standing)], standing, generator)
@@ -342,14 +344,16 @@ class SurrogateSearch(Algorithm):
             values, costs = np.vstack((values, climbed.values)), np.vstack((costs, climbed.costs))
             violation = np.concatenate((violation, climbed.violation))
             ends = climbed.ends
-            expected_there = climbed.costs[ends], climbed.violation[ends]
-            explorers = self._afar(climbed.values[ends], expected_there, standing, known, count // 2)
+            worth = gains(climbed.costs[ends], climbed.violation[ends], standing)
+            explorers = self._afar(climbed.values[ends], worth, known, count // 2)
             known = np.vstack((known, self._features.scaled(explorers)))
         if self._space.choices and len(standing.front):
             motors = ends_of_least_tried(self._features, self._archive, standing, prediction, generator)
             firsts = np.vstack([best[self._seen.new(best)][:_OF_A_MOTOR] for best in motors])
             explorers = np.vstack((explorers, firsts[: size // 4]))
-        others = self._afar(anywhere, expected, standing, known, max(count - len(explorers), 0))
+        # Beside a front, others need only hold the limits: where the model knows nothing, it promises nothing.
+        worth = -PENALTY * expected[1] if len(standing.front) else gains(*expected, standing)
+        others = self._afar(anywhere, worth, known, max(count - len(explorers), 0))
         # A climb from anywhere may have ended where it began, or where plain evolution leads.
         others = np.vstack((explorers, others, plain))
         new = self._seen.new(np.vstack((others, values)))
@@ -362,25 +366,22 @@ class SurrogateSearch(Algorithm):
         known = np.vstack((self._archive.points, self._features.scaled(others)))
         # Distance counts the less, the nearer a design has come to the limits.
         least = min(float(standing.behind.min()), 1.0)
-        return np.vstack((self._afar(values, (costs, violation), standing, known, left, least), others))
+        worth = gains(costs, violation, standing)
+        return np.vstack((self._afar(values, worth, known, left, least), others))
 
     def _starts(self, promising: Floats, standing: Standing, generator: np.random.Generator) -> Floats:
-        """Return designs that climbs begin at: promising ones anywhere, of the front, and close behind it."""
+        """Return designs that climbs begin at: promising ones anywhere, of the front, and close behind it.
+
+        The front's ends are always among them: little of the rest of a generation is spent there.
+        """
         count = self._times * _CLIMBS
-        front = generator.permutation(standing.front)[:count]
+        ends = standing.front[standing.posts[: standing.costs.shape[1]]]
+        front = np.concatenate((ends, generator.permutation(standing.front)))[:count]
         close = generator.permutation(standing.order[:_CLOSE])[: count // 2]
         return np.vstack((promising[:count], self._archive.values[front], self._archive.values[close]))
 
-    def _afar(
-        self,
-        values: Floats,
-        expected: tuple[Floats, Floats],
-        standing: Standing,
-        known: Floats,
-        count: int,
-        curiosity: float = CURIOSITY,
-    ) -> Floats:
-        """Choose ``count`` of n designs, shape (n, d), that promise much and are far from points that are known."""
+    def _afar(self, values: Floats, worth: Floats, known: Floats, count: int, curiosity: float = CURIOSITY) -> Floats:
+        """Choose ``count`` of n designs, shape (n, d), that are worth much and far from points that are known."""
         new = self._seen.new(values)
-        values, costs, violation = values[new], expected[0][new], expected[1][new]
-        return values[unlike(costs, violation, standing, self._features.scaled(values), known, count, curiosity)]
+        values, worth = values[new], worth[new]
+        return values[unlike(worth, self._features.scaled(values), known, count, curiosity)]

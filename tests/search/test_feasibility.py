@@ -116,9 +116,10 @@ def test_without_a_front_designs_that_promise_alike_are_unlike_each_other():
     archive.add(values, replace(scored(values), violation=missed, constraints=missed[:, None]))
     standing, points = archive.standing(), np.array([[0.0, 0.0], [0.0, 0.01], [0.9, 0.0]])
     costs, violation = np.zeros((3, 2)), np.array([0.2, 0.2, 0.25])
-    assert unlike(costs, violation, standing, points, np.array([[0.0, -0.5]]), 2, 0.2) == [2, 1]
+    assert unlike(gains(costs, violation, standing), points, np.array([[0.0, -0.5]]), 2, 0.2) == [2, 1]
     # The worse one is too bad if a place that is nearly good enough is known.
-    assert unlike(costs, np.array([0.2, 0.2, 0.9]), standing, points, np.array([[0.0, -0.5]]), 2, 0.2) == [1, 0]
+    worse = gains(costs, np.array([0.2, 0.2, 0.9]), standing)
+    assert unlike(worse, points, np.array([[0.0, -0.5]]), 2, 0.2) == [1, 0]
 
 
 def test_less_is_tolerated_after_choices_that_miss_the_limits_and_more_after_those_that_hold():

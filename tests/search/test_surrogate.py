@@ -9,7 +9,7 @@ from pareto_monoped.definition.algorithms import SurrogateSettings
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY
 from pareto_monoped.search.algorithm import Gear, Scores, Space
 from pareto_monoped.search.archive import Archive, shortfall
-from pareto_monoped.search.prediction import Prediction, _training, ranked, unlike
+from pareto_monoped.search.prediction import Prediction, _training, gains, ranked, unlike
 from pareto_monoped.search.response_surface import features_of, fitted, terms
 from pareto_monoped.search.surrogate import SurrogateSearch, climbs
 from pareto_monoped.search.variation import offspring, small_steps, spread
@@ -290,11 +290,11 @@ def test_explorers_are_far_from_what_is_known_and_from_each_other():
     values = np.vstack((archive.values[:20], np.repeat(new, 10, axis=0)))
     costs, violation = np.tile(standing.costs[standing.front[0]], (40, 1)), np.zeros(40)
     points, known = features.scaled(values), features.scaled(archive.values)
-    chosen = unlike(costs, violation, standing, points, known, 2)
+    chosen = unlike(gains(costs, violation, standing), points, known, 2)
     assert sorted(row // 10 for row in chosen) == [2, 3]
     # A gain of a tenth of the front is worth any distance.
     costs[7] -= 0.11 * standing.extent
-    assert unlike(costs, violation, standing, points, known, 1) == [7]
+    assert unlike(gains(costs, violation, standing), points, known, 1) == [7]
 
 
 def test_a_tenth_of_each_generation_explores(monkeypatch):
@@ -328,6 +328,10 @@ def test_a_tenth_of_each_generation_explores(monkeypatch):
     assert len(simulated) == 15
     assert simulated[:6].count(False) >= 4
     assert all(simulated[6:])
+    # Both ends of the front are among those on it.
+    reached = scored(known).values
+    ends = known[reached[:, 0].argmax()], known[reached[:, 1].argmin()]
+    assert {tuple(design) for design in ends} == {tuple(design) for design in began[-1][6:8]}
 
 
 def test_climbs_wait_until_the_cubic_has_as_many_designs_as_terms(monkeypatch):
@@ -378,6 +382,28 @@ def test_a_part_of_the_front_far_from_the_rest_in_the_space_is_found():
         assert best > 1.45
 
 
+def test_explorers_go_where_the_model_expects_nothing_of_a_front_but_that_limits_hold(monkeypatch):
+    """At 1.08 m the VT8020 needs a tenth less by its hip alone, in a corner that the model expected to be behind."""
+
+    def hoped(prediction, values):
+        short = values[:, 0] < 0.4
+        costs, _ = prediction.rough(values)
+        return costs - 100.0 * short[:, None], np.where(values[:, 2] > 100.0, 0.1 * limited, 0.0)
+
+    monkeypatch.setattr("pareto_monoped.search.surrogate.Prediction.hoped", hoped)
+    algorithm = SurrogateSearch(SPACE, replace(SETTINGS, population=40), 1)
+    for limited in (0, 1):
+        explorers = []
+        for _ in range(10):
+            asked = algorithm.ask().values
+            algorithm.tell(scored(asked))
+            plain = algorithm._plain
+            explorers.append(asked[-plain - algorithm._explorers // 2 : len(asked) - plain])
+        elsewhere = np.vstack(explorers[2:])
+        assert (elsewhere[:, 0] >= 0.4).mean() > 0.1
+        assert (elsewhere[:, 2] <= 100.0).all() or not limited
+
+
 @pytest.mark.parametrize("limit", [-1.0, 5.5])
 def test_it_simulates_what_a_sweep_of_the_truth_would_choose(limit):
     """After 300 designs nearly all that the model chooses is within a percent of the front of 20,000 spread designs."""
@@ -390,8 +416,9 @@ def test_it_simulates_what_a_sweep_of_the_truth_would_choose(limit):
     truth = Archive(SPACE)
     truth.add(many, found)
     standing = truth.standing()
-    # The last ones are plain evolution.
-    asked = scored(algorithm.ask().values[: -algorithm._plain], limit=limit)
+    # The last ones explore or are plain evolution.
+    values = algorithm.ask().values
+    asked = scored(values[: -algorithm._plain - algorithm._explorers], limit=limit)
     costs = np.column_stack((-np.log(asked.values[:, 0]), np.log(asked.values[:, 1])))
     behind = shortfall(standing.scaled(costs), standing.line)
     assert (asked.violation == 0.0).mean() > 0.9
