@@ -247,7 +247,7 @@ def limit():
     tracked = table("docs/limit.md", "tracking, J", "gap, %").set_index("design")["tracking, J"]
     assert tracked["paper's C"] < first.set_index("design")["best torque, J"]["paper's C"]
     yield f"Each search has {given('docs/limit.md', 'limit_reference_3.py', 'jumps'):,} jumps and one seed"
-    many = table("benchmarks/search_landscapes.md", "study", "expected over gained").set_index("study")
+    many = table("benchmarks/search_landscapes.md", "study", "its time").set_index("study")
     ours, plain = firsts(many.loc["torque over time"].iloc[1:3])
     assert ours == pytest.approx(plain, rel=0.05)  # the default search finds about as much as `nsga2`
     less = table("docs/limit.md", "virtual leg, J", "less, %").iloc[:, 3]
