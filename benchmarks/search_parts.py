@@ -1,0 +1,103 @@
+"""What each part of the default search is worth: the hypervolume that a search without it has, on eleven landscapes.
+
+    python benchmarks/search_parts.py          # a short look: two parts on two landscapes
+    python benchmarks/search_parts.py --full   # every part on every landscape: the table of search_parts.md
+
+Each part is taken out by a value of its constant at which it does nothing. The seeds are the same with and without it,
+but the searches then take other courses, so a difference means little that is not beyond the spread of the whole
+search. The script has no means to make a part look good: it runs the package's own search and measures with its own
+or pymoo's hypervolume.
+"""
+
+import argparse
+import statistics
+from collections.abc import Callable
+from contextlib import ExitStack
+from unittest.mock import patch
+
+import moocore
+import numpy as np
+import search_landscapes
+from pymoo.indicators.hv import HV
+from search_limits import STUDIES, searched
+
+SEARCH = "pareto_monoped.search"
+# What is taken out, and the constants that do it.
+PARTS: dict[str, dict[str, object]] = {
+    "nothing": {},
+    "Gaussian process": {"archive._FEW_DESIGNS": 0},
+    "two drawn generations with bounds and corners": {"surrogate._ON_BOUND": (0.0, 0.0)},
+    "small steps around the best": {"surrogate._STEPS": 0},
+    "climbs": {"prediction.Prediction.determined": False},
+    "scans within climbs, but for one value": {"variation._SCANNED": 1},
+    "explorers": {"surrogate._EXPLORING": 0.0},
+    "plain evolution": {"surrogate._PLAIN_ENDS": (0.0, 0.0)},
+    "smaller generations at first": {"surrogate._SMALLER": (1, 1)},
+    "tolerance that follows what holds": {"surrogate._HELD": -1.0},
+    "corrections by kriging": {"prediction._REACH": 1e-9},
+    "points behind the front in the fit": {"prediction._SPREAD_SHARE": 0.0},
+    "weights of the fit": {"prediction._NEARNESS": 1e3},
+    "learned share of failed jumps": {"prediction._RISK": 10.0},
+    "distance from the front in what is behind it": {"archive._APART": 0.0},
+}
+LANDSCAPES: dict[str, int] = {
+    "Case C": 5,
+    "MAD_M6C12": 5,
+    "U10": 5,
+    "Case C within tight limits": 4,
+    "`wide.toml`": 4,
+    "torque over time": 4,
+    "osy": 5,
+    "zdt3": 5,
+    "zdt4": 5,
+    "kursawe": 5,
+    "dtlz2": 5,
+}
+"""Landscapes and how many seeds each has, from 101 on, which no other benchmark uses."""
+MORE = {"U10": (1000, {"case": "C", "motor": "U10"})}
+
+
+def volumes(landscape: str, seeds: range) -> list[float]:
+    """Hypervolume of each search: of problems in percent of the true front's, of studies in m J."""
+    if landscape in search_landscapes.PROBLEMS:
+        volume = HV(ref_point=np.array(search_landscapes.PROBLEMS[landscape][1]))
+        whole = volume(moocore.filter_dominated(np.vstack(search_landscapes.known(landscape))))
+        found = (search_landscapes.search(landscape, "surrogate", seed, 1000) for seed in seeds)
+        return [100.0 * float(volume(points)) / whole for points in found]
+    jumps, values = (STUDIES | MORE)[landscape]
+    return [float(searched(values, "surrogate", seed, jumps).history["hypervolume"].iloc[-1]) for seed in seeds]
+
+
+def without(constants: dict[str, object], measure: Callable[[], list[float]]) -> list[float]:
+    """What is measured with other constants."""
+    with ExitStack() as stack:
+        for name, value in constants.items():
+            stack.enter_context(patch(f"{SEARCH}.{name}", value))
+        return measure()
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--full", action="store_true")
+    parser.add_argument("--only", nargs="+", choices=PARTS, help="these parts alone")
+    given = parser.parse_args()
+    parts = {part: PARTS[part] for part in given.only or (PARTS if given.full else ("nothing", "explorers"))}
+    landscapes = LANDSCAPES if given.full else {"U10": 2, "zdt4": 2}
+    print(f"| without | {' | '.join(landscapes)} |\n|---|{'---:|' * len(landscapes)}", flush=True)
+    whole: dict[str, float] = {}
+    for part, constants in parts.items():
+        cells = []
+        for landscape, count in landscapes.items():
+            seeds = range(101, 101 + count)
+            found = without(constants, lambda name=landscape, seeds=seeds: volumes(name, seeds))  # type: ignore[misc]
+            mean = statistics.mean(found)
+            if landscape in whole:
+                cells.append(f"{100.0 * (mean / whole[landscape] - 1.0):+.1f}")
+            else:
+                whole[landscape] = mean
+                cells.append(f"{mean:.1f} ± {statistics.stdev(found) / count**0.5:.1f}")
+        print(f"| {part} | {' | '.join(cells)} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
