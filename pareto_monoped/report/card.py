@@ -13,6 +13,7 @@ from pareto_monoped.analysis.at_bounds import bound_lines
 from pareto_monoped.analysis.choices import default_pick
 from pareto_monoped.analysis.sensitivity import importances
 from pareto_monoped.definition.algorithms import WeightedSettings
+from pareto_monoped.definition.study import is_opened
 from pareto_monoped.definition.variables import MOTOR_KEYS, Bounds
 from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES, PAPER_CASES, Variable, designs_of
 from pareto_monoped.errors import SelectionError
@@ -125,6 +126,7 @@ def study_card(
         seed=study.seed,
         objectives=study.objectives.names,
         group=group_of(data),
+        wider=[place for place, one in enumerate(studies) if is_opened(one.study, study)],
         state="finished" if data.meta.finished else "unfinished",
         budget=data.meta.budget,
         seconds=data.wall_time_s,
