@@ -275,7 +275,7 @@ def _by(data: "StudyData", studies: "Sequence[StudyData]") -> str:
     from pareto_monoped.definition.study import is_opened
 
     if is_opened(data.study, studies[0].study):
-        return "with more variables free"
+        return "with more free"
     names = data.study.objectives.names
     return f"by {next((word for name, word in WORDS.items() if name in names), ', '.join(names))}"
 
@@ -327,8 +327,7 @@ def _print_choices(studies: "list[StudyData]") -> None:
 def _print_saved(studies: "Sequence[StudyData]") -> None:
     """Print what more free variables save of the study's energy, and what the designs of either front take besides."""
     from pareto_monoped.analysis.choices import WORDS, saved
-    from pareto_monoped.definition.study import is_opened
-    from pareto_monoped.definition.variables import NOT_OPENED, Bounds
+    from pareto_monoped.definition.study import is_opened, opened_words
 
     first, last = studies[0], studies[-1]
     if not is_opened(last.study, first.study):
@@ -348,11 +347,8 @@ def _print_saved(studies: "Sequence[StudyData]") -> None:
         if before is not None and after is not None:
             share = f"{100.0 * (1.0 - getattr(after, own) / getattr(before, own)):.1f} %"
         echo(f" {height:.1f} m {' '.join(cells[own])} {share:>9} {' '.join(cells[other]):>30}")
-    freed = {name: value for name, value in last.study.variables.items() if value != first.study.variables[name]}
-    ranges = (f"{n} {v.lower:g} to {v.upper:g}" for n, v in freed.items() if isinstance(v, Bounds))
-    start = last.study.variables[NOT_OPENED]
-    stays = "" if isinstance(start, Bounds) else f"; {NOT_OPENED} stays {start:g}"
-    echo("\n" + wrapped(f"more free: {', '.join(ranges)}{stays}; {len(last.trials)} jumps.", indent=0))
+    text = f"more free: {opened_words(last.study, first.study)}; {len(last.trials)} jumps."
+    echo("\n" + wrapped(text, indent=0))
 
 
 def _cells(choice: "Choice | None") -> str:

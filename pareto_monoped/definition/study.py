@@ -29,6 +29,7 @@ from pareto_monoped.definition.study_file import (
 )
 from pareto_monoped.definition.variables import (
     MOTOR_KEYS,
+    NOT_OPENED,
     OPENED,
     Bounds,
     Named,
@@ -283,6 +284,14 @@ def is_opened(study: Study, base: Study) -> bool:
     own, given = study.variables, base.variables
     wide = opened_variables(given, base.controller, ())
     return own != given and all(own[name] in (given.get(name), wide.get(name)) for name in own)
+
+
+def opened_words(study: Study, base: Study) -> str:
+    """Return which variables of another study are opened in a study, with their bounds."""
+    wide = {name: value for name, value in study.variables.items() if value != base.variables.get(name)}
+    ranges = (f"{name} {one.lower:g} to {one.upper:g}" for name, one in wide.items() if isinstance(one, Bounds))
+    start = study.variables[NOT_OPENED]
+    return f"{', '.join(ranges)}; {NOT_OPENED} stays {'free' if isinstance(start, Bounds) else f'{start:g}'}"
 
 
 def filled(values: dict[str, Any], *, source: str) -> Study:

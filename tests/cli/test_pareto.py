@@ -281,7 +281,12 @@ def searched(study, **more):
 
 @pytest.mark.parametrize(
     ("evaluations", "changes", "jumps"),
-    [(None, {"evaluations": 4000}, 2000), (100, {}, 50), (1, {}, 1), (100, {"algorithm": WeightedSettings()}, 100)],
+    [
+        (None, {"evaluations": 4000}, 2000),
+        (100, {}, 50),
+        (1, {}, 1),
+        (100, {"algorithm": WeightedSettings(name="weighted_cmaes")}, 100),
+    ],
 )
 def test_the_third_search_has_half_of_the_jumps_and_all_options(monkeypatch, evaluations, changes, jumps):
     """But for a sweep of weights, which would not come to its last ones."""

@@ -185,6 +185,9 @@ def test_an_opened_study_is_a_front_of_its_own_beside_the_pair(two, opened, two_
     assert [card.label for card in payload.studies] == [*labels, "small with more variables free by mechanical energy"]
     assert [list(card.wider) for card in payload.studies] == [[2], [2], []]
     assert payload.title == "small"
+    freed = "knee_release_rad 0 to 1, rest_length_m 1 to 20; start_height_m stays 0.5."
+    assert [card.summary[-1].endswith(freed) for card in payload.studies] == [False, False, True]
+    assert payload.studies[2].summary[-1].startswith("More free than in small: stiffness_n_per_m 0.5 to 200, ")
     # What is dear, and what choosing by mechanical energy costs, is said of the pair alone.
     assert payload.comparison.choices == build(two).comparison.choices != []
     for card, alone in zip(payload.studies, two_payload.studies, strict=False):
