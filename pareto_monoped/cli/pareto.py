@@ -338,15 +338,14 @@ def _print_saved(studies: "Sequence[StudyData]") -> None:
     echo(f" {'height':6}{'studied':>11} {'more free':>11} {'saved':>9} {'studied':>18} {'more free':>11}")
     echo(f" {'─' * 70}")
     for height, before, after in saved(first, last):
-        cells = {
-            energy: [f"{'not reached' if one is None else format(getattr(one, energy), '.2f'):>11}" for one in pair]
-            for pair in ((before, after),)
-            for energy in (own, other)
-        }
+        least, besides = (
+            [f"{'not reached' if one is None else format(getattr(one, name), '.2f'):>11}" for one in (before, after)]
+            for name in (own, other)
+        )
         share = "-"
         if before is not None and after is not None:
             share = f"{100.0 * (1.0 - getattr(after, own) / getattr(before, own)):.1f} %"
-        echo(f" {height:.1f} m {' '.join(cells[own])} {share:>9} {' '.join(cells[other]):>30}")
+        echo(f" {height:.1f} m {' '.join(least)} {share:>9} {' '.join(besides):>30}")
     text = f"more free: {opened_words(last.study, first.study)}; {len(last.trials)} jumps."
     echo("\n" + wrapped(text, indent=0))
 

@@ -73,7 +73,7 @@ class _Seed(click.IntRange):
     help="Two or three measures, instead of the study's; needs a --db of its own.",
 )
 @click.option("--no-strength", is_flag=True, help="Do not ask whether parts hold; needs a --db of its own.")
-@click.option("--opened", is_flag=True, help="Free the variables that the study leaves out; needs a --db of its own.")
+@click.option("--opened", is_flag=True, help="Free more variables than the study does; needs a --db of its own.")
 @_as_json
 def run(
     study_file: Path,

@@ -1,5 +1,6 @@
 """The main job on a small budget, from the actuator map to the CAD, and again."""
 
+import contextlib
 import csv
 import io
 import os
@@ -20,7 +21,7 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.analysis import choices
 from pareto_monoped.analysis.choices import HEIGHTS_M, default_pick, two_fronts
 from pareto_monoped.cli import _run as cli
-from pareto_monoped.cli.pareto import _Ahead, _newer, _searches
+from pareto_monoped.cli.pareto import _Ahead, _newer, _search, _searches, _Steps
 from pareto_monoped.definition.algorithms import WeightedSettings
 from pareto_monoped.definition.study import load_study
 from pareto_monoped.definition.variables import OPENED
@@ -334,6 +335,26 @@ def stored(db):
         return len(read_study(db).trials)
     except DatabaseError:
         return 0
+
+
+@pytest.mark.parametrize("side_by_side", [True, False])
+def test_searches_run_side_by_side_and_come_to_their_ends_in_turn(monkeypatch, side_by_side):
+    events = []
+
+    class Begun(contextlib.nullcontext):
+        def __init__(self, run):
+            super().__init__(self)
+            self.run = run
+            events.append(f"begin {run[0]}")
+
+        def code(self):
+            events.append(f"end {self.run[0]}")
+
+    monkeypatch.setattr("pareto_monoped.cli.pareto._Ahead", Begun)
+    monkeypatch.setattr("pareto_monoped.cli.pareto._code_of", lambda words: events.append(f"do {words[0]}"))
+    _search([("a",), ("b",), ("c",)], _Steps(total=3), side_by_side=side_by_side)
+    ahead = ["begin b", "begin c", "do a", "end b", "end c"]
+    assert events == (ahead if side_by_side else ["do a", "do b", "do c"])
 
 
 class TestAhead:
