@@ -13,7 +13,7 @@ SHARED := -n $(JOBS) --dist loadfile --no-loadscope-reorder
 .DEFAULT_GOAL := help
 
 help:
-	@echo "make pareto     set up, then: actuator map, two fronts, report, knee design, its CAD"
+	@echo "make pareto     set up, then: actuator map, three fronts, report, knee design, its CAD"
 	@echo "make test       set up, then the tests (seven minutes on two cores)"
 	@echo "make test-long  the tests that take longer, too"
 	@echo "make lint       ruff and mypy"

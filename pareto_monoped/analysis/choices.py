@@ -14,6 +14,7 @@ from pareto_monoped.analysis.at_bounds import front_alone
 from pareto_monoped.analysis.remarks import refuse_empty
 from pareto_monoped.analysis.robustness import refuse_other_jumps
 from pareto_monoped.compute.chunks import cores
+from pareto_monoped.definition.study import is_opened
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import ParetoMonopedError, SelectionError
 from pareto_monoped.jump.evaluate import Evaluator
@@ -85,7 +86,11 @@ def counterpart(objectives: Objectives) -> Objectives | None:
 
 
 def two_fronts(studies: Sequence[StudyData]) -> tuple[StudyData, StudyData] | None:
-    """Return the studies by mechanical and by battery energy, if these are the two and else define the same search."""
+    """Return the studies by mechanical and by battery energy, if these are the two and else define the same search.
+
+    Studies in which variables of another one are opened are left aside.
+    """
+    studies = [data for data in studies if not any(is_opened(data.study, one.study) for one in studies)]
     by = {data.study.objectives: data for data in studies}
     if len(studies) != 2 or set(by) != {HEIGHT_AND_ENERGY, HEIGHT_AND_BATTERY}:
         return None
@@ -101,6 +106,13 @@ def choices(mechanical: StudyData, battery: StudyData, heights_m: Sequence[float
         Pair(height_m=height, mechanical=_choice(mechanical, height), battery=_choice(battery, height))
         for height in heights_m
     ]
+
+
+def saved(
+    study: StudyData, opened: StudyData, heights_m: Sequence[float] = HEIGHTS_M
+) -> list[tuple[float, Choice | None, Choice | None]]:
+    """Return, for each least height, the designs of least energy on a study's front and with more variables free."""
+    return [(height, _choice(study, height), _choice(opened, height)) for height in heights_m]
 
 
 def _choice(data: StudyData, height_m: float) -> Choice | None:
@@ -213,8 +225,10 @@ def dear_words(db: StudyPlace, row: "pd.Series[Any]") -> str:
 def default_pick(data: StudyData, studies: Sequence[StudyData]) -> Pick:
     """Return the design to begin with: the knee, of three objectives the compromise, that is not dear at the battery.
 
-    What is stored for a height is looked for in all ``studies``, such as those of one page.
+    What is stored for a height is looked for in all ``studies``, such as those of one page, but for those in which
+    variables of this one are opened.
     """
+    studies = [one for one in studies if not is_opened(one.study, data.study)]
     objectives, rows = data.study.objectives, data.sound
     chooser = Knee() if len(objectives.names) == 2 else Compromise(values=(1.0,) * len(objectives.names))
     able, plain = ~is_dear(rows, studies), pick(rows, chooser, objectives)

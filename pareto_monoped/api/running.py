@@ -19,7 +19,8 @@ from pareto_monoped.api.given import (
 from pareto_monoped.api.jumps import AnyCalibration, StrPath
 from pareto_monoped.api.studies import StoredStudy, as_path, as_place, load_study
 from pareto_monoped.definition.given import as_list, as_plain, as_table, count_of
-from pareto_monoped.definition.study import Study, budgeted, study_from_dict
+from pareto_monoped.definition.study import Study, budgeted, open_up, study_from_dict
+from pareto_monoped.definition.study import load_study as load_study_file
 from pareto_monoped.errors import InputError, StudyError, complaint, require_extra
 from pareto_monoped.jump.calibration import Calibration
 from pareto_monoped.jump.calibration_defaults import copies_for, rules_for
@@ -101,6 +102,7 @@ def run(
     evaluations: int | None = None,
     seed: int | None = None,
     second_seed: int | Literal[True] | None = None,
+    opened: bool = False,
     workers: int | None = None,
     executor: Executor | None = None,
     callback: "Callable[[Progress], Any] | None" = None,
@@ -130,6 +132,8 @@ def run(
         evaluations: total number of trials, instead of the study's.
         seed: instead of the study's.
         second_seed: search again with this seed, or the next one if True, and compare: the result has it as ``second``.
+        opened: free the optional variables, but for the start height, that a file leaves out or a ``Study`` has at
+            their defaults, and give K, C and T wider bounds than the paper's.
         workers: threads that simulate, all cores if None. It does not change the trials.
         executor: does the jumps in their place, such as ``concurrent.futures.ProcessPoolExecutor``; it does not change
             the trials either.
@@ -161,7 +165,11 @@ def run(
     from pareto_monoped.study.run import run as run_study
     from pareto_monoped.study.run import run_second, seed_of_second
 
-    one = study if isinstance(study, Study) else Study.from_toml(as_path(study, "study", allowed=_STUDY))
+    opened = truth_of("opened", opened)
+    if isinstance(study, Study):
+        one = open_up(study) if opened else study
+    else:
+        one = load_study_file(as_path(study, "study", allowed=_STUDY), opened=opened)
     target = _database(study, db)
     changed, own = _asked(one, algorithm, objectives, constraints, calibration, seed)
     second = found = None

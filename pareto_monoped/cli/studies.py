@@ -73,6 +73,7 @@ class _Seed(click.IntRange):
     help="Two or three measures, instead of the study's; needs a --db of its own.",
 )
 @click.option("--no-strength", is_flag=True, help="Do not ask whether parts hold; needs a --db of its own.")
+@click.option("--opened", is_flag=True, help="Free more variables than the study does; needs a --db of its own.")
 @_as_json
 def run(
     study_file: Path,
@@ -85,6 +86,7 @@ def run(
     db: StudyPlace | None,
     objectives: str | None,
     no_strength: bool,
+    opened: bool,
     as_json: bool,
 ) -> int:
     """Run a study, or continue it where it stopped.
@@ -101,6 +103,7 @@ def run(
         objectives=None if objectives is None else names_of(objectives),
         seed=seed,
         strength=False if no_strength else None,
+        opened=opened,
     )
     second = None if second_seed is None else seed_of_second(study.seed, second_seed)
     target = db or study_file.with_suffix(".db")

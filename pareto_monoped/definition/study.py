@@ -1,6 +1,6 @@
 """The definition of a study and its TOML file: variables, motor, calibration, constraints, algorithm, budget, seed."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from os import PathLike, fspath
 from pathlib import Path
@@ -29,6 +29,8 @@ from pareto_monoped.definition.study_file import (
 )
 from pareto_monoped.definition.variables import (
     MOTOR_KEYS,
+    NOT_OPENED,
+    OPENED,
     Bounds,
     Named,
     all_names,
@@ -38,6 +40,7 @@ from pareto_monoped.definition.variables import (
     text_of,
     variables_of,
 )
+from pareto_monoped.definition.variables import opened as opened_variables
 from pareto_monoped.design import ALL_DEFAULTS, ALL_NAMES, KNOT_NAMES, NAMES, RuleSet
 from pareto_monoped.errors import StudyError, complaint
 from pareto_monoped.jump.calibration_defaults import (
@@ -240,17 +243,55 @@ def load_study(
     seed: int | None = None,
     objectives: Sequence[str] | None = None,
     strength: bool | None = None,
+    opened: bool = False,
 ) -> Study:
     """Read the study in a TOML file, with other values for some of its keys; raise ``StudyError`` as ``from_toml``.
 
-    With other ``objectives``, what the file's reference point says of dropped ones is left out.
+    With other ``objectives``, what the file's reference point says of dropped ones is left out. ``opened`` says whether
+    the variables that the file leaves out are opened, see ``open_up``.
     """
     values = file_values(path)
     given = {"evaluations": evaluations, "seed": seed, "strength": strength}
     values |= {key: value for key, value in given.items() if value is not None}
     if objectives is not None:
         values = with_objectives(values, objectives)
-    return filled(values, source=f"study file {str(path)!r}")
+    source = f"study file {str(path)!r}"
+    study = filled(values, source=source)
+    return open_up(study, kept=values.get("variables", ()), source=source) if opened else study
+
+
+def open_up(study: Study, *, kept: Container[str] = (), source: str = "study") -> Study:
+    """Return the study with more variables free, under a name that says so.
+
+    Optional variables at their defaults become free, and K, C and T within the paper's bounds get wider ones; those
+    named in ``kept`` stay, and the start height (``variables.NOT_OPENED``).
+
+    Raises:
+        StudyError: nothing is left to open.
+    """
+    without_stops = not strength_for(study.calibration)
+    variables = opened_variables(study.variables, study.controller, kept, without_stops=without_stops)
+    if variables == study.variables:
+        raise StudyError(
+            f"{source}: variables left to open = none: must be at least one of {', '.join(OPENED)} that acts; leave it "
+            "out, or do not open the study"
+        )
+    return replace(study, variables=variables, name=f"{study.name[:170]} with more variables free")  # of 200 letters
+
+
+def is_opened(study: Study, base: Study) -> bool:
+    """Say whether a study has the variables of another, of which some are opened."""
+    own, given = study.variables, base.variables
+    wide = opened_variables(given, base.controller, ())
+    return own != given and all(own[name] in (given.get(name), wide.get(name)) for name in own)
+
+
+def opened_words(study: Study, base: Study) -> str:
+    """Return which variables of another study are opened in a study, with their bounds."""
+    wide = {name: value for name, value in study.variables.items() if value != base.variables.get(name)}
+    ranges = (f"{name} {one.lower:g} to {one.upper:g}" for name, one in wide.items() if isinstance(one, Bounds))
+    start = study.variables[NOT_OPENED]
+    return f"{', '.join(ranges)}; {NOT_OPENED} stays {'free' if isinstance(start, Bounds) else f'{start:g}'}"
 
 
 def filled(values: dict[str, Any], *, source: str) -> Study:

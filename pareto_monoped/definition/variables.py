@@ -1,7 +1,7 @@
 """The variables of a study, free within bounds or fixed, and its motors: of both joints, or of hip and knee each."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -32,6 +32,20 @@ class Bounds:
 
     lower: float
     upper: float
+
+
+OPEN_GAINS = {
+    "stiffness_n_per_m": Bounds(lower=0.5, upper=200.0),
+    "damping_n_s_per_m": Bounds(lower=0.0, upper=100.0),
+    "torsional_stiffness_n_m_per_rad": Bounds(lower=0.0, upper=200.0),
+}
+"""Bounds of K, C and T where the paper's are opened, as in studies/wide.toml. Our own choice: fronts end at the paper's
+least K, with which 10 m of rest length force a jump of 0.75 m, and at its greatest C and T."""
+NOT_OPENED = "start_height_m"
+"""The optional variable that stays fixed in an opened study. Where it is free, every design of the front starts at its
+greatest value, 0.7 m: a base that is put up there has that height for nothing, and the front would tell of little else.
+"""
+OPENED = (*(one.name for one in VARIABLES if one.default is not None and one.name != NOT_OPENED), *OPEN_GAINS)
 
 
 def variables_of(
@@ -74,6 +88,25 @@ def variables_of(
             f"{lowest:g} m; allow longer links"
         )
     return chosen
+
+
+def opened(
+    variables: Mapping[str, Bounds | float], law: Law, kept: Container[str], *, without_stops: bool = False
+) -> dict[str, Bounds | float]:
+    """Return the variables with those in ``OPENED`` free that are at their defaults, K, C and T within ``OPEN_GAINS``.
+
+    Those that are ``kept`` or have other values or bounds stay. So does what does not act: what the law does not read,
+    and a release before the stop of a knee ``without_stops``.
+    """
+    known = names_under(law)
+    changed = dict(variables)
+    for variable in VARIABLES:
+        name, usual = variable.name, Bounds(lower=variable.lower, upper=variable.upper)
+        if name not in OPENED or name in kept or name not in known or (without_stops and name == "knee_release_rad"):
+            continue
+        if variables[name] == (usual if variable.default is None else variable.default):
+            changed[name] = OPEN_GAINS.get(name, usual)
+    return changed
 
 
 def names_under(law: Law) -> tuple[str, ...]:

@@ -13,6 +13,7 @@ from pareto_monoped.analysis.at_bounds import bound_lines
 from pareto_monoped.analysis.choices import default_pick
 from pareto_monoped.analysis.sensitivity import importances
 from pareto_monoped.definition.algorithms import WeightedSettings
+from pareto_monoped.definition.study import is_opened, opened_words
 from pareto_monoped.definition.variables import MOTOR_KEYS, Bounds
 from pareto_monoped.design import HEADLINE_HEIGHT_M, NAMES, PAPER_CASES, Variable, designs_of
 from pareto_monoped.errors import SelectionError
@@ -105,6 +106,8 @@ def study_card(
     foot_kg, foot_radius_m = _foot(data)
     cases = pd.DataFrame([case.design.as_array() for case in PAPER_CASES.values()], columns=list(NAMES))
     several = len(study.kits) > 1
+    bases = [one.study for one in studies if is_opened(study, one.study)]
+    freed = [f"More free than in {bases[0].name}: {opened_words(study, bases[0])}."] if bases else []
     picks, masses_kg = _picks(data, studies or (data,), front, row_of), _body_masses_kg(data, front)
     failed = data.trials.loc[state == "failed", "status"].value_counts()
     chosen: dict[str, Sequence[int]] = dict(_gearboxes(trials, data.kit_rows(trials), places.maps))
@@ -125,6 +128,7 @@ def study_card(
         seed=study.seed,
         objectives=study.objectives.names,
         group=group_of(data),
+        wider=[place for place, one in enumerate(studies) if is_opened(one.study, study)],
         state="finished" if data.meta.finished else "unfinished",
         budget=data.meta.budget,
         seconds=data.wall_time_s,
@@ -138,7 +142,7 @@ def study_card(
             for name, value in study.variables.items()
         },
         at_bounds=list(bound_lines(data, front).values()),
-        summary=sentences(data, front, again.cases),
+        summary=[*sentences(data, front, again.cases), *freed],
         notes=notes(data, again),
         trials=trial_columns(trials, chosen, len(data.trials), variables, goals),
         front=[row_of[int(trial)] for trial in front["trial"]],

@@ -177,7 +177,12 @@ def _labels(sources: Sequence[Source]) -> list[str]:
 
 
 def _title(cards: Sequence[StudyCard]) -> str:
-    """Return the study's name, where it is one, or one by several objectives; else the first one's and a count."""
+    """Return the study's name, where it is one, or one by several objectives; else the first one's and a count.
+
+    Studies in which variables of another one are opened do not count.
+    """
+    opened = {place for card in cards for place in card.wider}
+    cards = [card for place, card in enumerate(cards) if place not in opened]
     by = {(card.name, tuple(card.objectives)) for card in cards}
     one = len({card.name for card in cards}) == 1 and len(by) == len(cards)
     return cards[0].name if one else f"{cards[0].name} and {len(cards) - 1} more"

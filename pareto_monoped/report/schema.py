@@ -225,6 +225,7 @@ class StudyCard:
     seed: int
     objectives: Sequence[str]  #: of the study, which decide what is on its front
     group: str  #: equal for studies that are runs of one study with several seeds
+    wider: Sequence[int]  #: which studies on the page have variables of this one opened
     state: str
     budget: int
     seconds: float

@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pareto_monoped.analysis.choices import HEIGHT_AND_BATTERY, choices, counterpart, two_fronts
+from pareto_monoped.analysis import choices as module
+from pareto_monoped.analysis.choices import HEIGHT_AND_BATTERY, choices, counterpart, saved, two_fronts
+from pareto_monoped.definition.study import open_up
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 from pareto_monoped.storage.reader import read_study
 from tests.study.support import made_database as database
@@ -67,6 +69,29 @@ def test_studies_that_differ_in_more_than_the_energy_are_no_pair(fronts, tmp_pat
         assert two_fronts([mechanical, second]) is None
     assert two_fronts([mechanical]) is None
     assert two_fronts([mechanical, battery, battery]) is None
+
+
+def test_an_opened_study_is_left_aside(fronts, monkeypatch):
+    """By the pair, and by what is dear: it has more variables free than the designs that are judged."""
+    mechanical, battery = fronts
+    third = replace(mechanical, study=open_up(mechanical.study))
+    assert two_fronts([mechanical, battery, third]) == (mechanical, battery)
+    assert two_fronts([mechanical, third]) is None
+    seen = []
+    monkeypatch.setattr(module, "is_dear", lambda rows, studies: seen.append(studies) or np.zeros(len(rows), bool))
+    for data in (mechanical, third):
+        module.default_pick(data, [mechanical, battery, third])
+    assert [len(studies) for studies in seen] == [2, 3]
+
+
+def test_what_opening_saves_is_between_the_cheapest_designs_of_both_fronts(fronts):
+    """Of the second study the third trial failed, so that its front ends at 0.8 m."""
+    rows = saved(*fronts, heights_m=(0.65, 0.75, 0.85))
+    assert [(height, before.trial, after and after.trial) for height, before, after in rows] == [
+        (0.65, 0, 0),
+        (0.75, 1, 1),
+        (0.85, 2, None),
+    ]
 
 
 def test_the_counterpart_has_the_other_energy():

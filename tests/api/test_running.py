@@ -41,6 +41,19 @@ def test_a_study_from_python_is_that_of_its_file(file):
     assert pm.Study.from_toml(file, algorithm="random").algorithm.name == "random"
 
 
+def test_an_opened_run_is_that_of_the_command_line_and_goes_on_without_the_option(file, tmp_path):
+    """Named there as in Python; a study of Python's own is opened as its file is."""
+    line = ["run", str(file), "--opened", "--db", str(tmp_path / "line.db"), "--evaluations"]
+    assert cli([*line, "40"]) == 0
+    assert cli(["resume", str(tmp_path / "line.db"), "--evaluations", "60"]) == 0
+    assert cli([*line, "80"]) == 0
+    for name, study in (("file", file), ("own", pm.Study.from_toml(file))):
+        stored = pm.run(study, tmp_path / f"{name}.db", opened=True)
+        assert len(stored.trials) == 80
+        assert stored.trials["rest_length_m"].nunique() > 1
+        same(stored.path, tmp_path / "line.db")
+
+
 def test_a_callback_that_returns_true_stops_the_run_and_resume_ends_it(file, tmp_path):
     seen = []
 

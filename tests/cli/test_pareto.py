@@ -1,5 +1,6 @@
 """The main job on a small budget, from the actuator map to the CAD, and again."""
 
+import contextlib
 import csv
 import io
 import os
@@ -9,6 +10,7 @@ import signal
 import subprocess
 import sys
 from contextlib import redirect_stderr, redirect_stdout, suppress
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +21,10 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.analysis import choices
 from pareto_monoped.analysis.choices import HEIGHTS_M, default_pick, two_fronts
 from pareto_monoped.cli import _run as cli
-from pareto_monoped.cli.pareto import _Ahead, _newer
+from pareto_monoped.cli.pareto import _Ahead, _newer, _search, _searches, _Steps
+from pareto_monoped.definition.algorithms import WeightedSettings
+from pareto_monoped.definition.study import load_study
+from pareto_monoped.definition.variables import OPENED
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import DatabaseError, StudyError
 from pareto_monoped.jump.calibration import load_calibration
@@ -60,8 +65,8 @@ def job(tmp_path_factory, unchecked_module):
 class TestMainJob:
     def test_it_names_the_files_and_they_exist(self, job):
         folder, done = job
-        named = [line.split()[0] for line in done.stdout.split("Made\n")[1].splitlines()[:5]]
-        assert len(named) == 5
+        named = [line.split()[0] for line in done.stdout.split("Made\n")[1].splitlines()[:6]]
+        assert named[3] == "studies/quick_opened.db"
         for name in named:
             assert (folder / name).exists(), name
         assert not list(folder.rglob("*.tmp"))
@@ -86,6 +91,32 @@ class TestMainJob:
         assert two_fronts([first, second]) is not None
         assert len(second.trials) == 100
 
+    def test_the_third_front_is_the_first_study_with_more_variables_free_on_half_the_jumps(self, job):
+        folder, _ = job
+        first, third = (read_study(folder / "studies" / f"quick{word}.db") for word in ("", "_opened"))
+        assert set(third.study.free) - set(first.study.free) == {"knee_release_rad", "rest_length_m"}
+        assert (third.trials["start_height_m"] == 0.5).all()
+        assert third.study.objectives == first.study.objectives
+        assert third.study.seed == first.study.seed
+        assert len(third.trials) == 50
+
+    def test_the_last_table_is_what_opening_saves_and_what_it_takes_from_the_battery(self, job):
+        folder, done = job
+        fronts = [read_study(folder / "studies" / f"quick{word}.db").front() for word in ("", "_opened")]
+        table = done.stdout.split("more free     saved")[1].splitlines()[2 : 2 + len(HEIGHTS_M)]
+        for height, line in zip(HEIGHTS_M, table, strict=True):
+            able = [rows[rows["height_m"] >= height] for rows in fronts]
+            best = [rows.loc[rows["energy_j"].idxmin()] if len(rows) else None for rows in able]
+            sides = [
+                ["not reached" if row is None else f"{row[name]:.2f}" for row in best]
+                for name in ("energy_j", "electrical_energy_j")
+            ]
+            least = [np.nan if row is None else float(row["energy_j"]) for row in best]
+            share = "-" if np.isnan(sum(least)) else f"{100 * (least[0] - least[1]) / least[0]:.1f} %"
+            assert line.split() == f"{height:.1f} m {' '.join(sides[0])} {share} {' '.join(sides[1])}".split()
+        said = " ".join(done.stdout.split())
+        assert "knee_release_rad 0 to 1, rest_length_m 1 to 20; start_height_m stays 0.5; 50 jumps." in said
+
     def test_the_design_is_dear_or_not_beside_the_designs_of_both_studies(self, job, monkeypatch):
         folder, _ = job
         beside = []
@@ -97,13 +128,14 @@ class TestMainJob:
         monkeypatch.setattr(choices, "default_pick", picked)
         assert pareto(folder).returncode == 0
         assert beside
-        assert all(names == ["energy_j", "electrical_energy_j"] for names in beside)
+        assert all(names == ["energy_j", "electrical_energy_j", "energy_j"] for names in beside)
 
     def test_the_closing_table_is_what_both_fronts_offer(self, job):
         folder, done = job
         first, second = (read_study(folder / "studies" / f"quick{word}.db") for word in ("", "_battery"))
         lines = [line.split() for line in done.stdout.splitlines()]
         rows = [line[2:] for line in lines if len(line) > 2 and line[1] == "m" and line[0][:2] in ("0.", "1.")]
+        rows = rows[: len(HEIGHTS_M)]  # the table of what the third front saves follows
         assert len(rows) == len(HEIGHTS_M)
         for height, cells in zip(HEIGHTS_M, rows, strict=True):
             fronts = ((first, "energy_j"), (second, "electrical_energy_j"))
@@ -125,10 +157,15 @@ class TestMainJob:
     def test_the_report_shows_both_fronts_and_the_same_table(self, job):
         folder, done = job
         text = (folder / "reports" / "quick" / "report.html").read_text(encoding="utf-8")
-        for words in ("quick by mechanical energy", "quick by battery energy", "The two energies"):
+        for words in (
+            "quick by mechanical energy",
+            "quick by battery energy",
+            "quick with more variables free by mechanical energy",
+            "The two energies",
+        ):
             assert words in text
         table = text.split('id="energies"')[1].split("</table>")[0]
-        shares = re.findall(r"[+-][0-9.]+ %", done.stdout)
+        shares = re.findall(r"[+-][0-9.]+ %", done.stdout.split("their battery energy")[0])
         assert shares
         assert re.findall(r"[+-][0-9.]+ %", table) == shares
 
@@ -172,7 +209,8 @@ class TestMainJob:
         assert again.stdout == first.stdout
         after = {path: path.stat().st_mtime_ns for path in before}
         changed = {path.name for path in before if before[path] != after[path]}
-        assert len(read_study(folder / "studies" / "quick_battery.db").trials) == 100
+        counts = [len(read_study(folder / "studies" / f"quick_{word}.db").trials) for word in ("battery", "opened")]
+        assert counts == [100, 50]
         assert changed <= {"actuators.csv"}
 
     @pytest.mark.long
@@ -184,7 +222,7 @@ class TestMainJob:
         stale = text.replace('"kv_rpm_per_v": ', '"kv_rpm_per_v": 1')
         (design / "design.json").write_text(stale)
         with subprocess.Popen(WORDS, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as again:
-            step = next(line for line in again.stderr if line.startswith("[4/5]"))
+            step = next(line for line in again.stderr if line.startswith("[5/6]"))
             next(line for line in again.stderr if line.startswith("building"))
             again.send_signal(signal.SIGINT)
             assert "interrupted" in again.stderr.read()
@@ -201,7 +239,7 @@ class TestMainJob:
         (design / "design.json").write_text(text.replace('"kv_rpm_per_v": ', '"kv_rpm_per_v": 1'))
         again = pareto(folder)
         assert again.returncode == 0, again.stderr
-        (step,) = [line for line in again.stderr.splitlines() if line.startswith("[4/5]")]
+        (step,) = [line for line in again.stderr.splitlines() if line.startswith("[5/6]")]
         assert step.endswith(" --force")
         assert (design / "design.json").read_text() == text
 
@@ -229,8 +267,51 @@ def test_a_study_of_other_objectives_has_one_front(tmp_path):
     assert done.returncode == 0, done.stderr
     assert "[4/4]" in done.stderr
     assert [path.name for path in (tmp_path / "studies").glob("*.db")] == ["quick.db"]
+    assert "note: one front only" in done.stderr
+    assert "saved" not in done.stdout
     assert "costs" not in done.stdout
     assert max(len(line) for line in done.stdout.splitlines()) <= 80
+
+
+def searched(study, **more):
+    """The commands of the main job's searches by the names of their databases."""
+    path = Path("studies/quick.toml")
+    given = {"evaluations": None, "options": ["--workers=2", "--seed=7", "--no-strength"]} | more
+    return {db.name: [str(word) for word in run] for db, run in _searches(path, study, Path("a/b.db"), **given).items()}
+
+
+@pytest.mark.parametrize(
+    ("evaluations", "changes", "jumps"),
+    [
+        (None, {"evaluations": 4000}, 2000),
+        (100, {}, 50),
+        (1, {}, 1),
+        (100, {"algorithm": WeightedSettings(name="weighted_cmaes")}, 100),
+    ],
+)
+def test_the_third_search_has_half_of_the_jumps_and_all_options(monkeypatch, evaluations, changes, jumps):
+    """But for a sweep of weights, which would not come to its last ones."""
+    monkeypatch.chdir(ROOT)
+    study = replace(load_study(ROOT / "studies" / "quick.toml"), **changes)
+    runs = searched(study, evaluations=evaluations)
+    assert list(runs) == ["b.db", "b_battery.db", "b_opened.db"]
+    limit = [f"--evaluations={evaluations}"] if evaluations else []
+    options = ["--workers=2", "--seed=7", "--no-strength"]
+    assert runs["b.db"] == ["run", "studies/quick.toml", "--db", "a/b.db", *limit, *options]
+    words = ["run", "studies/quick.toml", "--opened", "--db", "a/b_opened.db", f"--evaluations={jumps}", *options]
+    assert runs["b_opened.db"] == words
+
+
+def test_a_study_that_leaves_nothing_to_open_has_two_fronts(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("studies").mkdir()
+    text = "\n".join(f"{name} = 8.0" for name in OPENED if name != "knee_release_rad")
+    Path("studies/quick.toml").write_text(
+        f'name = "quick"\nevaluations = 40\n[variables]\nknee_release_rad = 0\n{text}\n'
+    )
+    assert list(searched(load_study(Path("studies/quick.toml")))) == ["b.db", "b_battery.db"]
+    said = " ".join(capsys.readouterr().err.split())
+    assert said.startswith("note: no third front: study file 'studies/quick.toml': variables left to open = none")
 
 
 def test_a_missing_study_is_one_line(tmp_path):
@@ -254,6 +335,26 @@ def stored(db):
         return len(read_study(db).trials)
     except DatabaseError:
         return 0
+
+
+@pytest.mark.parametrize("side_by_side", [True, False])
+def test_searches_run_side_by_side_and_come_to_their_ends_in_turn(monkeypatch, side_by_side):
+    events = []
+
+    class Begun(contextlib.nullcontext):
+        def __init__(self, run):
+            super().__init__(self)
+            self.run = run
+            events.append(f"begin {run[0]}")
+
+        def code(self):
+            events.append(f"end {self.run[0]}")
+
+    monkeypatch.setattr("pareto_monoped.cli.pareto._Ahead", Begun)
+    monkeypatch.setattr("pareto_monoped.cli.pareto._code_of", lambda words: events.append(f"do {words[0]}"))
+    _search([("a",), ("b",), ("c",)], _Steps(total=3), side_by_side=side_by_side)
+    ahead = ["begin b", "begin c", "do a", "end b", "end c"]
+    assert events == (ahead if side_by_side else ["do a", "do b", "do c"])
 
 
 class TestAhead:

@@ -114,6 +114,7 @@ OPTIONS = {
         "run small.toml --workers 1 --evaluations 15",
         "run small.toml --workers 1 --second-seed 7",
         "run small.toml --objectives height_m,drift_m",
+        "run small.toml --db opened.db --opened --evaluations 20 --workers 1",
         "run pair.toml --db new.db --objectives height_m,drift_m --evaluations 20 --seed 9 --no-strength --workers 1",
         "status new.db",
         "resume new.db --evaluations 25 --workers 1",

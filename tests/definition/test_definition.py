@@ -1,15 +1,19 @@
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from pareto_monoped.actuator.search import map_for
 from pareto_monoped.definition.algorithms import ALGORITHMS
-from pareto_monoped.definition.study import Study, load_study, study_from_dict
-from pareto_monoped.definition.variables import Bounds, number_of
-from pareto_monoped.design import DEFAULTS, LENGTHS, LOWER, PAPER_NAMES, UPPER
+from pareto_monoped.definition.study import Study, is_opened, load_study, open_up, study_from_dict
+from pareto_monoped.definition.variables import OPENED, Bounds, number_of
+from pareto_monoped.design import DEFAULTS, LENGTHS, LOWER, PAPER_CASES, PAPER_CONTROL, PAPER_NAMES, UPPER
 from pareto_monoped.errors import InputError, StudyError
 from pareto_monoped.jump import calibration_defaults
+from pareto_monoped.jump.calibration import load_calibration
+from pareto_monoped.jump.evaluate import Evaluator
 from tests.study.support import assert_refused
 from tests.study.support import study_of as made
 
@@ -230,3 +234,76 @@ def test_gains_of_the_controller_may_be_any_number_from_0_to_a_million(name):
     for given in (-1e-9, 1.0001e6):
         with pytest.raises(StudyError, match="a number from 0 to 1e\\+06"):
             number_of("fixed", name, given)
+
+
+def test_an_opened_study_frees_what_it_leaves_out_and_keeps_what_it_says(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(
+        'name = "mine"\nevaluations = 40\n[variables]\nknee_release_rad = 0.0\nstart_height_m = 0.45\n'
+        "damping_n_s_per_m = { lower = 0.0, upper = 10.0 }\nstiffness_n_per_m = 7.0\n"
+    )
+    plain, opened = (load_study(path, opened=value) for value in (False, True))
+    changed = {name: value for name, value in opened.variables.items() if value != plain.variables[name]}
+    assert changed == {
+        "rest_length_m": Bounds(lower=1.0, upper=20.0),
+        "torsional_stiffness_n_m_per_rad": Bounds(lower=0.0, upper=200.0),
+    }
+    assert opened.name == "mine with more variables free"
+    assert study_from_dict(opened.as_dict(), source="stored") == opened
+    assert is_opened(opened, plain)
+    assert not is_opened(plain, opened)
+    assert not is_opened(plain, plain)
+
+
+def test_the_gains_of_an_opened_study_are_those_of_the_wide_one():
+    wide, opened = load_study(SHIPPED[0].with_name("wide.toml")), open_up(made(case="A"))
+    assert {name: wide.variables[name] for name in PAPER_CONTROL} == {n: opened.variables[n] for n in PAPER_CONTROL}
+    assert set(opened.free) == {*PAPER_NAMES, *DEFAULTS} - {*LENGTHS, "start_height_m"}
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        "\n".join(["[variables]", *(f"{name} = 8.0" for name in OPENED[1:]), "knee_release_rad = 0.1"]),
+        '[controller]\nkind = "torque_over_time"\nknots = 3\n',
+    ],
+)
+def test_a_study_that_leaves_nothing_to_open_is_refused(tmp_path, table):
+    """It names everything itself, or its law reads nothing of it."""
+    path = tmp_path / "mine.toml"
+    path.write_text(f'name = "mine"\nevaluations = 40\n{table}')
+    line = r"^study file '.*mine\.toml': variables left to open = none: must be .*knee_release_rad, .*; leave it out.*$"
+    with pytest.raises(StudyError, match=line):
+        load_study(path, opened=True)
+    with pytest.raises(StudyError, match=r"^study: variables left to open"):
+        open_up(open_up(made(case="A")))
+
+
+@pytest.mark.parametrize(("calibration", "acts"), [("paper", False), ("reference", True)])
+def test_a_release_before_a_stop_is_opened_only_where_there_is_a_stop(calibration, acts):
+    study = open_up(made(calibration=calibration))
+    assert ("knee_release_rad" in study.free) == acts
+    assert "rest_length_m" in study.free
+    case = PAPER_CASES["C"].design
+    rules = "paper" if calibration == "paper" else "iso6336"
+    evaluate = Evaluator(map_for("VT8020", rules), load_calibration(calibration))
+    plain, released = evaluate(np.array([case.as_array(), case.replace({"knee_release_rad": 0.5}).as_array()])).of(
+        "height_m"
+    )
+    assert (plain != released) == acts
+
+
+def test_designs_at_the_bounds_of_an_opened_study_jump():
+    """Each bound alone on the design of Case C, by the evaluator, which knows nothing of studies.
+
+    0.5 N/m over 10 m and 7.9 N/m over 1 m of spring push less than the robot weighs.
+    """
+    opened, case = open_up(made()), PAPER_CASES["C"].design
+    ends = [(name, value) for name in OPENED for value in asdict(opened.variables[name]).values()]
+    designs = [case, *(case.replace({name: value}) for name, value in ends)]
+    jumps = Evaluator(map_for("VT8020"), load_calibration())(np.array([one.as_array() for one in designs]))
+    height = jumps.of("height_m")
+    fallen = {end for end, one in zip(ends, height[1:], strict=True) if np.isnan(one)}
+    assert fallen == {("stiffness_n_per_m", 0.5), ("rest_length_m", 1.0)}
+    same = {end for end, one in zip(ends, height[1:], strict=True) if one == height[0]}
+    assert same == {end for end, one in zip(ends, designs[1:], strict=True) if one == case}

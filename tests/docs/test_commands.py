@@ -205,6 +205,16 @@ def test_the_tables_of_the_readme_are_those_of_the_main_job_and_of_table_1():
     assert f"its centre of mass rises by {rise} m" in said
 
 
+def test_the_readme_repeats_what_opening_saves():
+    """From the last table of the main job: least energies, and the share saved."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    starts = ("height, m", "the paper's seven variables", "more variables free", "saved, %")
+    told = [re.search(rf"^\| {start} \|(.*)\|$", text, re.M).group(1).replace("|", " ").split() for start in starts]
+    rows = [row for row in shown_by("docs/getting_started.md", "make pareto") if len(row) == 6]
+    assert len(rows) == 6
+    assert told == [list(column) for column in zip(*(row[:4] for row in rows), strict=True)]
+
+
 def test_the_readme_repeats_what_getting_started_shows():
     first = "pareto-monoped run studies/quick.toml"
     assert (

@@ -1,10 +1,13 @@
 """The page of studies with other objectives: axes, words, colours, and two fronts in one chart."""
 
+import re
 from dataclasses import replace
 
+import pandas as pd
 import pytest
 
-from pareto_monoped.analysis.choices import choices
+from pareto_monoped.analysis.choices import choices, is_dear
+from pareto_monoped.definition.study import open_up
 from pareto_monoped.measures import measure
 from pareto_monoped.report.card import Source
 from pareto_monoped.report.comparison import least_second
@@ -41,6 +44,14 @@ def two(source, battery):
     """Both fronts; the search may differ as little as the audit, or the two are no pair."""
     settings = {"algorithm": source.data.study.algorithm, "audit": True}
     return [source, replace(battery, data=replace(battery.data, study=replace(battery.data.study, **settings)))]
+
+
+@pytest.fixture(scope="module")
+def opened(source):
+    """The first study with more variables free: the same jumps, on a tenth of the energy from the battery."""
+    data = source.data
+    trials = data.trials.assign(electrical_energy_j=0.1 * data.trials["electrical_energy_j"])
+    return replace(source, data=replace(data, study=open_up(data.study), trials=trials))
 
 
 @pytest.fixture(scope="module")
@@ -166,6 +177,41 @@ def test_the_table_of_both_energies_says_what_the_first_costs(two, two_payload):
             assert f"{100 * row.cost:+.1f} %" in text
     assert "%" in text
     assert 'id="energies"' not in comparison_tables(build([two[0], two[0]]))
+
+
+def test_an_opened_study_is_a_front_of_its_own_beside_the_pair(two, opened, two_payload):
+    payload = build([*two, opened])
+    labels = ["small by mechanical energy", "small by battery energy"]
+    assert [card.label for card in payload.studies] == [*labels, "small with more variables free by mechanical energy"]
+    assert [list(card.wider) for card in payload.studies] == [[2], [2], []]
+    assert payload.title == "small"
+    freed = "knee_release_rad 0 to 1, rest_length_m 1 to 20; start_height_m stays 0.5."
+    assert [card.summary[-1].endswith(freed) for card in payload.studies] == [False, False, True]
+    assert payload.studies[2].summary[-1].startswith("More free than in small: stiffness_n_per_m 0.5 to 200, ")
+    # What is dear, and what choosing by mechanical energy costs, is said of the pair alone.
+    assert payload.comparison.choices == build(two).comparison.choices != []
+    for card, alone in zip(payload.studies, two_payload.studies, strict=False):
+        assert card.picks == alone.picks
+
+
+def test_a_design_is_dear_beside_studies_of_its_own_variables_only(two, opened, folder, open_tab):
+    """The page marks those of the front that Python finds, although the opened study takes a tenth from the battery."""
+    tab = open_tab(written(folder, "opened.html", build([*two, opened])))
+    front, pair = two[0].data.front(), [source.data for source in two]
+    dear = front[is_dear(front, pair)]
+    assert 0 < len(dear) < len(front)
+    texts = chart(tab, "gd.layers.filter((t) => t.name === 'front').flatMap((t) => t.x.map((_, i) => t.text(i)))")
+    marked = [text for text in texts if "dear at the battery" in text]
+    numbers = {int(re.search(r"trial (\d+)", text)[1]) for text in marked if "small by mechanical energy" in text}
+    assert numbers == set(dear["trial"])
+    tab.page.evaluate(f"location.hash = '#view=1&at=0:{dear['trial'].iloc[0]}'")
+    tab.expects("#subject", "for this height with these variables free")
+    tab.page.get_by_role("button", name="Show that").click()
+    able = pd.concat([data.sound.assign(study=i) for i, data in enumerate(pair)])
+    able = able[able["height_m"] >= dear["height_m"].iloc[0]]
+    least = able.iloc[able["electrical_energy_j"].argmin()]
+    label = ("mechanical", "battery")[least["study"]]
+    tab.expects("#subject", f"Trial {least['trial']}, small by {label} energy")
 
 
 def test_a_surface_of_two_minimised_objectives_counts_downward():

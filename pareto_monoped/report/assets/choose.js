@@ -145,13 +145,16 @@ function foundDesign(key) {
 const DEAR = 1.5, BATTERY = "electrical_energy_j";
 
 // What marks a design that takes half as much again from the battery as the least stored for its height; else "".
+// Studies with more variables free are left aside: what they have is no choice in its own study.
 function dearWords(study, row) {
   const height = columnOf(study, "height_m")[row], own = columnOf(study, BATTERY)[row];
+  const { wider } = page.studies[study];
   let least = Infinity;
   for (const i of state.visible) {
+    if (wider.includes(i)) continue;
     const heights = columnOf(i, "height_m"), energies = columnOf(i, BATTERY);
     for (const other of soundRows(i)) if (heights[other] >= height && energies[other] < least) least = energies[other];
   }
   if (!(own > DEAR * least)) return "";
-  return `Dear at the battery: it takes ${shown(BATTERY, own)} from it, ${round(own / least, 1)} times the least that is stored for this height, ${shown(BATTERY, least)}.`;
+  return `Dear at the battery: it takes ${shown(BATTERY, own)} from it, ${round(own / least, 1)} times the least that is stored for this height${wider.length ? " with these variables free" : ""}, ${shown(BATTERY, least)}.`;
 }

@@ -10,7 +10,7 @@ function showSubject(chosen) {
   const motor = chosen.study.trials.columns.motor ? `${page.kits[chosen.kit].motor}; ` : "";
   box.append(make("span", {}, `${motor}${chosen.why}`));
   const dear = chosen.kind === "trial" ? dearWords(chosen.index, chosen.row) : "";
-  if (dear) box.append(make("span", { class: "dear" }, `⚠ ${dear} `, dearer(chosen.measures.height_m)));
+  if (dear) box.append(make("span", { class: "dear" }, `⚠ ${dear} `, dearer(chosen)));
   const heads = new Set([...page.goals, ...page.leading]);
   for (const name of heads) {
     if (chosen.measures[name] === undefined) continue;
@@ -26,9 +26,10 @@ function showSubject(chosen) {
   }
 }
 
-// A way from a dear design to the one that takes the least from the battery at its height.
-function dearer(height) {
-  return buttonOf("Show that", () => { state.best = `least ${BATTERY}`; setRange("height_m", [height, null]); showAnswer(true); });
+// A way from a dear design to the one that takes the least from the battery at its height, which a study with more
+// variables free would outdo.
+function dearer({ study, measures: { height_m: height } }) {
+  return buttonOf("Show that", () => { for (const i of study.wider) state.visible.delete(i); state.best = `least ${BATTERY}`; setRange("height_m", [height, null]); showAnswer(true); });
 }
 
 function variablesOf(chosen) {
