@@ -181,7 +181,7 @@ def binding_limits(data: StudyData, trial: int) -> list[str]:
 
 def front_alone(front: StudyFront) -> StudyData:
     """Return a study of which only the front was read: without its other trials, history, audits and checkpoint."""
-    return StudyData(
+    found = StudyData(
         db=front.db,
         study=front.study,
         meta=front.meta,
@@ -189,9 +189,11 @@ def front_alone(front: StudyFront) -> StudyData:
         history=pd.DataFrame(),
         audits=pd.DataFrame({"trial": [], "well_conditioned": []}),
         checkpoint=Checkpoint(generation=0, evaluations=0, state={}),
-        parts=front.parts,
+        parts=(),
         sealed=front.sealed,
     )
+    vars(found)["content_hash"] = front.content_hash  # that of all trials, whose digests it has not
+    return found
 
 
 def _constraints(data: StudyData, row: pd.DataFrame) -> list[str]:

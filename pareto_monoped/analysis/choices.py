@@ -32,7 +32,7 @@ from pareto_monoped.pareto.selectors import (
     column,
     required_fits,
 )
-from pareto_monoped.storage.front_reader import least_stored, read_front
+from pareto_monoped.storage.front_reader import StudyFront, least_stored
 from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.storage.store import Store
@@ -257,13 +257,13 @@ def numbered(selector: Selector | None) -> int | None:
     return chooser.number if isinstance(chooser, Trial) else None
 
 
-def choose_of(db: StudyPlace, selector: Selector, *, notify: Notify) -> Chosen:
-    """Choose a design of the study in a database, see ``choose``; read its front alone where that is enough."""
-    kept, number = read_front(db), numbered(selector)
+def choose_of(kept: StudyFront, selector: Selector, *, notify: Notify) -> Chosen:
+    """Choose a design of a study whose front was read, see ``choose``; read all of it where that is not enough."""
+    number = numbered(selector)
     enough = needs_front_only(selector, kept.study.objectives) and len(kept.rows) > 0
     if enough and (number is None or (kept.rows["trial"] == number).any()):
         return _chosen(front_alone(kept), selector, kept.study.objectives)
-    return choose(read_study(db), selector, notify=notify)
+    return choose(read_study(kept.db), selector, notify=notify)
 
 
 def choose(data: StudyData, selector: Selector, objectives: Objectives | None = None, *, notify: Notify) -> Chosen:

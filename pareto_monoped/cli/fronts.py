@@ -243,7 +243,7 @@ def pick(
         known, compared = as_built(read_study(db), read_robustness(db), notify=note)
         chosen = choose(known, wanted, notify=note)
     else:
-        chosen = choose_of(db, wanted, notify=note)
+        chosen = choose_of(data, wanted, notify=note)
     rows, picked = chosen.rows, chosen.picked
     names = shown_columns(data.study, data.used, data.study.objectives)
     # Robustness is known of some designs only, which may lie many steps apart.

@@ -4,7 +4,6 @@ Nothing that takes longer than a key press is imported to complete a name.
 """
 
 from collections.abc import Callable, Iterable
-from concurrent.futures import Executor
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +18,8 @@ from pareto_monoped.storage.address import is_address
 from pareto_monoped.storage.place import place_of
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from click.shell_completion import CompletionItem
 
     from pareto_monoped.compute.crew import Limits
@@ -251,7 +252,7 @@ def where(processes: int | None, scheduler: str | None, workers: int | None) -> 
 
 def executor_at(
     place: Where, *, limits: "Limits | None" = None, extra: str | None = None
-) -> AbstractContextManager[Executor | None]:
+) -> "AbstractContextManager[Executor | None]":
     """Return the executor for a place, None for threads; what happens to its workers is said on standard error.
 
     Packages of ``extra`` must have the same versions on other hosts; ``limits`` are those of jumps if None.

@@ -179,7 +179,7 @@ def sensitivity(
     if isinstance(wanted, Trial):
         trial = wanted.number  # which need not be on the front
     else:
-        trial = choose_of(db, wanted, notify=note).picked.trial
+        trial = choose_of(kept, wanted, notify=note).picked.trial
     with options.executor_at(place) as executor:
         found = find(
             db,

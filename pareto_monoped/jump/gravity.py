@@ -93,29 +93,37 @@ def least_energy_j(robots: RobotArrays, calibration: Calibration, height_m: Floa
     return np.asarray(np.maximum(weight_n * (height_m + below - start_m), 0.0))
 
 
-def least_of_all_j(robots: RobotArrays, calibration: Calibration, heights_m: Floats) -> Floats:
+def least_of_all_j(
+    robots: RobotArrays, calibration: Calibration, heights_m: Floats, known_j: float | Floats = np.inf
+) -> Floats:
     """Return the least ``least_energy_j`` of n robots at each height: no jump of any of them lies below it.
 
-    A robot is searched at the heights only at which a bound is below what another one needs. The bound is weak duality:
-    with a price on the foot's depth below the floor and none on the stops, thigh and shank hang as they like.
+    A robot is searched at the heights only at which a bound is below what another one needs, or what is ``known_j`` of
+    others. The bound is weak duality: with a price on the foot's depth below the floor and none on the stops, thigh and
+    shank hang as they like.
     """
     weight_n, start_m = _start(robots, calibration)
-    robots = take(robots, standing := np.flatnonzero(np.isfinite(start_m)))
-    weight_n, start_m = weight_n[standing], start_m[standing]
-    least = np.full(len(heights_m), np.inf)
-    if not len(robots):
-        return least
     a, b, c, d = _levers_m(robots, stand_mass_kg(robots, calibration))
-    bound = np.zeros((len(robots), len(heights_m)))
-    for price in (0.0 * c, np.maximum(-c / robots.shank_length_m, 0.0)):
+    lines = []
+    for price in (0.0 * c, np.clip(-c / robots.shank_length_m, 0.0, 1.0)):
         hanging = np.hypot(a + price * robots.thigh_length_m, b) + np.hypot(c + price * robots.shank_length_m, d)
-        room = heights_m - robots.foot_radius_m[:, None]
-        below = -hanging[:, None] - price[:, None] * room
-        bound = np.maximum(bound, weight_n[:, None] * (heights_m + below - start_m[:, None]))
-    rows, columns = bound.argmin(axis=0), np.arange(len(heights_m))
+        lines.append((weight_n * (1.0 - price), weight_n * (price * robots.foot_radius_m - hanging - start_m)))
+
+    def bound(rows: NDArray[np.intp]) -> Floats:
+        (steep, low), (flat, high) = ((slope[rows, None], constant[rows, None]) for slope, constant in lines)
+        return np.maximum(np.maximum(steep * heights_m + low, flat * heights_m + high), 0.0)
+
+    least = np.full(len(heights_m), known_j)
+    rows = np.flatnonzero(np.isfinite(start_m))
+    parts = np.array_split(rows, len(rows) // _AT_ONCE + 1)
+    rows = np.concatenate([part[(bound(part) < least).any(axis=1)] for part in parts])
+    if not len(rows):
+        return least
+    bounds = bound(rows)
+    found, columns = bounds.argmin(axis=0), np.arange(len(heights_m))
     for _ in range(2):
-        np.minimum.at(least, columns, least_energy_j(take(robots, rows), calibration, heights_m[columns]))
-        rows, columns = np.nonzero(bound < least)
+        np.minimum.at(least, columns, least_energy_j(take(robots, rows[found]), calibration, heights_m[columns]))
+        found, columns = np.nonzero(bounds < least)
     return least
 
 

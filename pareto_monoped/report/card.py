@@ -199,13 +199,14 @@ def _body_masses_kg(data: StudyData, designs: pd.DataFrame) -> NDArray[np.float6
 def _floor_j(data: StudyData) -> list[float]:
     """Return the least energy of every design that jumped, at ``FLOOR_HEIGHTS_M``, rounded down."""
     needed = data.trials[[name for name in (*data.study.names, *MOTOR_KEYS) if name in data.trials]]
-    jumped = needed[data.trials["height_m"].notna()]
+    jumped = data.trials["height_m"].notna().to_numpy()
     least = np.full(len(FLOOR_HEIGHTS_M), np.inf)
-    for kit, rows in data.kit_rows(jumped):
+    for kit, rows in data.kit_rows(needed):
+        rows = rows[jumped[rows]]
         for some in np.array_split(rows, len(rows) // MOST_ROWS + 1):
-            designs = designs_of(jumped.iloc[some])
+            designs = designs_of(needed.iloc[some])
             robots = robot_arrays(designs, kit, data.calibration.mass)
-            least = np.minimum(least, least_of_all_j(robots, data.calibration, np.array(FLOOR_HEIGHTS_M)))
+            least = least_of_all_j(robots, data.calibration, np.array(FLOOR_HEIGHTS_M), least)
     return (np.floor(1e4 * least) / 1e4).tolist() if np.isfinite(least).all() else []
 
 

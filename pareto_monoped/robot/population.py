@@ -126,7 +126,9 @@ def robot_arrays(designs: ArrayLike, maps: Maps, options: MassOptions = PARTS_ON
     values, both = np.atleast_2d(complete(designs)), joint_maps(maps)
     leg = leg_dimensions(both)
     intervals = {joint: both.of(joint).interval_index(values[:, NAMES.index(f"{joint}_ratio")]) for joint in JOINTS}
-    reason = tuple(_missing(both, intervals, values, i) for i in range(len(values)))
+    reason = [""] * len(values)
+    for i in np.flatnonzero(np.minimum(intervals["hip"], intervals["knee"]) < 0):
+        reason[i] = _missing(both, intervals, values, i)
     tables = {joint: actuator_table(both.of(joint)) for joint in JOINTS}
     rows = {joint: tables[joint].row[np.maximum(intervals[joint], 0)] for joint in JOINTS}
 
@@ -162,7 +164,7 @@ def robot_arrays(designs: ArrayLike, maps: Maps, options: MassOptions = PARTS_ON
         made_parts=made,
         bought_parts=bought,
         stand_mass_kg=np.full(len(values), stand_mass_kg(leg)),
-        reason=reason,
+        reason=tuple(reason),
         stops=JointStops(hip=hip_stop(leg), knee=knee_stop(leg)),
     )
 

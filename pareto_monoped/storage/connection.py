@@ -80,6 +80,10 @@ class Connection(ABC):
     def close(self) -> None:
         """Close the connection; an open transaction is rolled back."""
 
+    def counted(self, table: str, key: str) -> int | None:
+        """Return the number of rows if their keys are 0, 1, 2 and so on in stored order; None if not, or not known."""
+        return None
+
     # A server looks after the following itself.
 
     def defects(self) -> Iterator[str]:

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 READ_TIMEOUT_S = 10.0
 """How long a reader waits while another program has locked the whole file. A run locks it only for moments."""
+_STRETCH = 10_000
+"""Keys that are compared at once: 49 kB of text. Our own choice."""
 _OPTUNAS_OWN = {"alembic_version", "version_info"}
 """Tables in which Optuna keeps the version of its schema; all others are empty before the first study."""
 _OF_TRIALS = ("user_attributes", "system_attributes", "params", "values", "intermediate_values", "heartbeats")
@@ -82,6 +84,22 @@ class FileConnection(sqlite3.Connection, Connection):
     def columns(self, table: str) -> list[str]:
         """Return the names of a table's columns."""
         return [row[1] for row in self.execute(f"PRAGMA table_info({table})")]
+
+    def counted(self, table: str, key: str) -> int | None:
+        """Compare keys as text that SQLite joins, for which it takes half the time of handing over each."""
+        # Each stretch begins with the last row of the one before, so that none can hide between two.
+        count, asked, expected = 0, "", ",".join(map(str, range(_STRETCH)))
+        while True:
+            before = max(count - 1, 0)
+            text, found = self.execute(
+                f"SELECT group_concat({key} - {before}), count(*) FROM "
+                f"(SELECT {key} FROM {table} {asked} ORDER BY {key} LIMIT {_STRETCH})"
+            ).fetchone()
+            if text == expected:
+                count = before + _STRETCH
+                asked = f"WHERE {key} >= {count - 1}"
+            else:
+                return before + found if found == 0 or expected.startswith(f"{text},") else None
 
     def trial_ids_after(self, last: int, count: int) -> int:
         """Return the next key; a transaction that writes is alone."""

@@ -12,7 +12,7 @@ from pareto_monoped.storage.kept_front import KeptFront, checked_front, foreign_
 from pareto_monoped.storage.meta import StudyMeta
 from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.reader import read_study, trial_blocks, trial_frame, with_agility, with_motors
-from pareto_monoped.storage.seals import Parts, content_hash, has_seals
+from pareto_monoped.storage.seals import has_seals
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,13 +26,8 @@ class StudyFront:
     #: the paper's seven variables, and the optional ones of which some trial has another value than the default
     used: tuple[Variable, ...]
     foreign: int  #: how many of Optuna's trials are not of this package
-    parts: Parts  #: digests of its trials
+    content_hash: str  #: see ``seals.ContentHash``
     sealed: bool
-
-    @property
-    def content_hash(self) -> str:
-        """SHA-256 of what decides the study's trials and of all trials, see ``seals.content_hash``."""
-        return content_hash(self.meta, self.parts)
 
 
 def read_front(db: StudyPlace) -> StudyFront:
@@ -51,7 +46,7 @@ def read_front(db: StudyPlace) -> StudyFront:
             rows=rows,
             used=used,
             foreign=foreign,
-            parts=data.parts,
+            content_hash=data.content_hash,
             sealed=data.sealed,
         )
 
@@ -92,6 +87,6 @@ def _kept(connection: Connection, db: StudyPlace) -> StudyFront:
         rows=front,
         used=used,
         foreign=foreign_count(connection, checked.seals.trials),
-        parts=checked.seals.parts,
+        content_hash=checked.seals.content_hash,
         sealed=True,
     )

@@ -16,7 +16,7 @@ from pareto_monoped.storage.columns import listed
 from pareto_monoped.storage.connection import Connection
 from pareto_monoped.storage.meta import StudyMeta, meta_of_rows
 from pareto_monoped.storage.place import StudyPlace, storage_of
-from pareto_monoped.storage.seals import ROWS, Seals, damaged, seals_of_trials
+from pareto_monoped.storage.seals import ROWS, Seals, damaged, read_seals, require_trials
 
 FRONT = """
 CREATE TABLE monoped_front (
@@ -144,19 +144,21 @@ class CheckedFront:
 
 def checked_front(connection: Connection, db: StudyPlace) -> CheckedFront:
     """Read what is behind the front of a study that has a running hash; raise ``DatabaseError`` if it is damaged."""
-    seals = seals_of_trials(connection, db)
     rows = {table: connection.execute(ROWS[table]).fetchall() for table in ("meta", "front")}
+    meta = meta_of_rows(rows["meta"], db)
+    numbers, counts, _ = kept_row(connection) if rows["front"] else ([], {}, set())
+    seals = read_seals(connection, db, meta=meta, numbers=numbers, since=sum(counts.values()))
+    require_trials(connection, db, seals.trials)
     if findings := [line for table in rows for line in seals.row_findings(table, rows[table])]:
         raise damaged(db, findings)
     columns = connection.columns("monoped_trials")
-    numbers, counts, _ = kept_row(connection)
     read = [*numbers, *range(sum(counts.values()), seals.trials)]
     trials = rows_of(connection, columns, read)
     if len(trials) < len(read):
         raise damaged(db, ["trials of its kept front are missing"])
     if trials and (findings := seals.trial_findings(dict(zip(columns, zip(*trials, strict=True), strict=True)), read)):
         raise damaged(db, findings)
-    return CheckedFront(seals=seals, meta=meta_of_rows(rows["meta"], db), columns=columns, trials=trials)
+    return CheckedFront(seals=seals, meta=meta, columns=columns, trials=trials)
 
 
 def front_trials(db: StudyPlace) -> dict[int, str]:

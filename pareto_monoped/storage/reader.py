@@ -106,9 +106,8 @@ def _typed_columns(names: list[str], rows: list[tuple[Any, ...]]) -> Block:
 def _typed(values: tuple[Any, ...], dtype: str) -> Any:
     if dtype == "str":
         # The same text is kept once per block, not once per row.
-        texts: dict[str, str] = {}
-        shared = [texts.setdefault(word, word) for word in ("" if value is None else str(value) for value in values)]
-        return pd.array(shared, dtype="str")
+        texts = {value: "" if value is None else str(value) for value in set(values)}
+        return pd.array(list(map(texts.__getitem__, values)), dtype="str")
     if dtype == "int64":
         return np.array(values, dtype=np.int64)
     return np.array(values, dtype=np.float64)  # None becomes NaN
@@ -416,7 +415,7 @@ def read_study(db: StudyPlace) -> StudyData:
             findings += [line for table in rows for line in seals.row_findings(table, rows[table])]
         if findings:
             raise damaged(db, findings)
-        parts: Parts = [(0, tuple(columns), "".join(trial_digests(columns, trials)))] if seals is None else seals.parts
+        parts: Parts = [(range(len(trials)), tuple(columns), "".join(trial_digests(columns, trials)))] if seals is None else seals.parts
         return StudyData(
             db=db,
             study=study,

@@ -10,13 +10,13 @@ edits, and an older copy in a study's place, change the content hash, which some
 
 import hashlib
 import json
-import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pareto_monoped.config import parsed_json
 from pareto_monoped.definition.provenance import NOT_RESULTS, digest
@@ -94,8 +94,11 @@ def row_digests(rows: Iterable[Sequence[Any]]) -> dict[str, str]:
     return {str(row[0]): row_digest(row) for row in rows}
 
 
-def _link_hash(previous: str, first: int, columns: str, trials: str, written: str) -> str:
-    return hashlib.sha256("\n".join((previous, str(first), columns, trials, written)).encode()).hexdigest()
+def _link_hash(previous: str, first: int, columns: str, trials: bytes, written: str) -> str:
+    found = hashlib.sha256(f"{previous}\n{first}\n{columns}\n".encode())
+    found.update(trials)
+    found.update(f"\n{written}".encode())
+    return found.hexdigest()
 
 
 class Sealer:
@@ -119,14 +122,15 @@ class Sealer:
                 columns = json.dumps(list(names))
                 self._names, self._names_link = list(names), link
         text = json.dumps({table: dict(rows) for table, rows in written.items()})
-        digest = _link_hash(previous, first, columns, trials, text)
+        digest = _link_hash(previous, first, columns, trials.encode(), text)
         row = (link, first, columns, trials, text, digest)
         self._connection.insert("monoped_seals", ("link", "first", "columns", "trials", "written", "hash"), [row])
         self.links = link + 1
 
 
-Parts = Sequence[tuple[int, tuple[str, ...], str]]
-"""Number of the first trial, columns and digests of trials that follow one another."""
+Numbers = range | NDArray[np.int64]
+Parts = Sequence[tuple[Numbers, tuple[str, ...], str]]
+"""Numbers of trials, ascending, their columns and digests."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -135,22 +139,19 @@ class Seals:
 
     db: StudyPlace  #: the study's database
     links: int  #: number of links in the chain
-    parts: Parts  #: of all trials
+    trials: int  #: number of trials that have a digest
+    parts: Parts  #: of all trials, or of those that were asked for
     #: the latest digests of the rows of all other tables
     written: dict[str, dict[str, str]] = field(default_factory=dict)
-
-    @property
-    def trials(self) -> int:
-        """Number of trials that have a digest."""
-        return sum(len(digests) for _, _, digests in self.parts) // _DIGITS
+    content_hash: str = ""  #: if it was asked for
 
     def trial_findings(self, values: Mapping[str, Any], numbers: Sequence[int]) -> list[str]:
         """Return what does not match among some trials, ascending by number; ``values`` has their columns."""
         findings = []
         places = np.asarray(numbers, dtype=np.int64)
         known = np.zeros(len(places), dtype=bool)
-        for first, names, digests in self.parts:
-            begin, end = np.searchsorted(places, (first, first + len(digests) // _DIGITS))
+        for sealed, names, digests in self.parts:
+            begin, end = np.searchsorted(places, (sealed[0], sealed[-1] + 1))
             known[begin:end] = True
             if begin == end:
                 continue
@@ -159,10 +160,12 @@ class Seals:
             numbers_there = places[begin:end]
             part = {name: np.asarray(column[begin:end]) for name, column in values.items()}
             found = trial_digests(names, part)
+            range_there = isinstance(sealed, range)
+            where = numbers_there - sealed[0] if range_there else np.searchsorted(sealed, numbers_there)
             wrong = {
                 int(number)
-                for number, digest in zip(numbers_there, found, strict=True)
-                if digests[_DIGITS * (number - first) : _DIGITS * (number - first + 1)] != digest
+                for number, k, digest in zip(numbers_there, where.tolist(), found, strict=True)
+                if digests[_DIGITS * k : _DIGITS * (k + 1)] != digest
             }
             without = _KNOWN & set(values) - set(names)
             wrong.update(numbers_there[_not_default(part, without, len(numbers_there))].tolist())
@@ -199,31 +202,66 @@ def has_seals(connection: Connection) -> bool:
     return row is not None and row[0] != "1"
 
 
-def read_seals(connection: Connection, db: StudyPlace) -> Seals:
-    """Read the chain, and raise ``DatabaseError`` unless its links follow from each other."""
-    parts: list[tuple[int, tuple[str, ...], list[str]]] = []
+def read_seals(
+    connection: Connection, db: StudyPlace, *, meta: StudyMeta | None = None, numbers: Any = (), since: int = 0
+) -> Seals:
+    """Read the chain, and raise ``DatabaseError`` unless its links follow from each other.
+
+    Digests are kept of the trials with these ``numbers``, ascending, and of all ``since`` one, so by default of all.
+    The content hash is made if ``meta`` is given: all digests of a large study need not be in memory for it.
+    """
+    parts: list[tuple[list[Numbers], tuple[str, ...], list[bytes]]] = []
     names: tuple[str, ...] = ()
     written: dict[str, dict[str, str]] = {}
     previous, links, trials = _BEFORE_ALL, 0, 0
+    content = None if meta is None else ContentHash(meta)
     for row in connection.execute("SELECT * FROM monoped_seals ORDER BY link"):
         link, first, columns, digests, text, digest = row
         whole = all(isinstance(part, str) for part in (columns, digests, text))
-        if not whole or link != links or _link_hash(previous, first, columns, digests, text) != digest:
+        raw = digests.encode() if whole else b""
+        if not whole or link != links or _link_hash(previous, first, columns, raw, text) != digest:
             raise damaged(db, [f"link {links} of its running hash does not follow from those before"])
         previous, links = digest, links + 1
         if columns:
             names = tuple(parsed_json(columns))
-        if digests and (columns or not parts or first != trials):
-            parts.append((first, names, []))
-        if digests:
-            parts[-1][2].append(digests)
-            trials = first + len(digests) // _DIGITS
+        if raw:
+            own: Numbers = range(first, first + len(raw) // _DIGITS)
+            if content is not None:
+                content.add(names, raw)
+            if columns or not parts or first != trials:
+                parts.append(([], names, []))
+            trials = own.stop
+            if first < since:
+                own, raw = _some(own, raw, numbers, since)
+            parts[-1][0].append(own)
+            parts[-1][2].append(raw)
         for table, digests_of_rows in parsed_json(text).items():
             written.setdefault(table, {}).update(digests_of_rows)
     if links == 0:
         raise damaged(db, ["its running hash is empty"])
-    joined = tuple((first, names, "".join(digests)) for first, names, digests in parts)
-    return Seals(db=db, links=links, parts=joined, written=written)
+    joined = [(_joined(own), names, b"".join(pieces).decode()) for own, names, pieces in parts]
+    return Seals(
+        db=db,
+        links=links,
+        trials=trials,
+        parts=[part for part in joined if len(part[0])],
+        written=written,
+        content_hash="" if content is None else content.hexdigest(),
+    )
+
+
+def _some(there: range, raw: bytes, numbers: Any, since: int) -> tuple[Numbers, bytes]:
+    """Return which trials of a link are among some numbers or ``since`` one, and their digests."""
+    wanted = np.asarray(numbers, dtype=np.int64)
+    begin, end = np.searchsorted(wanted, (there.start, there.stop))
+    own = np.concatenate((wanted[begin:end], np.arange(max(there.start, since), there.stop)))
+    return own, np.frombuffer(raw, dtype=f"S{_DIGITS}")[own - there.start].tobytes()
+
+
+def _joined(pieces: Sequence[Numbers]) -> Numbers:
+    if all(isinstance(one, range) for one in pieces):
+        return range(pieces[0][0], pieces[-1][-1] + 1)
+    return np.concatenate([np.asarray(one, dtype=np.int64) for one in pieces])
 
 
 def numbering_findings(numbers: Any, first: int = 0) -> list[str]:
@@ -237,46 +275,61 @@ def missing_findings(count: int, sealed: int) -> list[str]:
     return [f"{sealed - count} trials are missing"] if count < sealed else []
 
 
-def seals_of_trials(connection: Connection, db: StudyPlace) -> Seals:
-    """Read the chain, and raise ``DatabaseError`` unless exactly the trials that it has are stored, each once."""
-    seals = read_seals(connection, db)
+def require_trials(connection: Connection, db: StudyPlace, sealed: int) -> None:
+    """Raise ``DatabaseError`` unless exactly the trials that the chain has are stored, each once, in order."""
+    if connection.counted("monoped_trials", "trial") == sealed:
+        return
     rows = connection.execute("SELECT trial FROM monoped_trials ORDER BY trial")
     numbers = np.fromiter(chain.from_iterable(rows), np.int64)
-    if findings := numbering_findings(numbers) + missing_findings(len(numbers), seals.trials):
+    if findings := numbering_findings(numbers) + missing_findings(len(numbers), sealed):
         raise damaged(db, findings)
-    return seals
 
 
-def content_hash(meta: StudyMeta, parts: Parts) -> str:
-    """Return the SHA-256 of what decides a study's trials and of the digests of all trials in order.
+class ContentHash:
+    """The SHA-256 of what decides a study's trials and of the digests of all trials in order, while it grows.
 
     It is the same in a file and on a server, with any number of workers and after any interruption: it depends neither
     on how trials were grouped into transactions nor on what was computed from them.
     """
-    *_, found = _growing(meta, parts, sys.maxsize)
-    return found
+
+    def __init__(self, meta: StudyMeta) -> None:
+        study = {key: value for key, value in meta.study.items() if key not in NOT_RESULTS}
+        decisive = digest({"study": study, "contents": meta.contents, "versions": meta.versions})
+        self._found = hashlib.sha256(decisive.encode())
+        self._names: Sequence[str] = ()
+
+    def add(self, names: Sequence[str], digests: bytes) -> None:
+        """Add the digests of trials that have these columns."""
+        if names != self._names:
+            self._found.update(json.dumps(names).encode())
+            self._names = names
+        self._found.update(digests)
+
+    def hexdigest(self) -> str:
+        """Return the hash of what was added so far."""
+        return self._found.hexdigest()
+
+
+def content_hash(meta: StudyMeta, parts: Parts) -> str:
+    """Return the content hash of all trials."""
+    found = ContentHash(meta)
+    for _, names, digests in parts:
+        found.add(names, digests.encode())
+    return found.hexdigest()
 
 
 def trials_of_hash(meta: StudyMeta, parts: Parts, expected: str) -> int | None:
     """Return how many of the first trials have a content hash that begins so, or None if no number of them has."""
-    hashes = enumerate(_growing(meta, parts, _DIGITS))
-    return next((count for count, found in hashes if found.startswith(expected)), None)
-
-
-def _growing(meta: StudyMeta, parts: Parts, digits: int) -> Iterator[str]:
-    """Yield the content hash without trials, and after so many more ``digits`` of its digests."""
-    study = {key: value for key, value in meta.study.items() if key not in NOT_RESULTS}
-    decisive = digest({"study": study, "contents": meta.contents, "versions": meta.versions})
-    found = hashlib.sha256(decisive.encode())
-    before: tuple[str, ...] = ()
-    yield found.hexdigest()
+    found, count = ContentHash(meta), 0
+    if found.hexdigest().startswith(expected):
+        return count
     for _, names, digests in parts:
-        if names != before:
-            found.update(json.dumps(names).encode())
-            before = names
-        for place in range(0, len(digests), digits):
-            found.update(digests[place : place + digits].encode())
-            yield found.hexdigest()
+        for place in range(0, len(digests), _DIGITS):
+            found.add(names, digests[place : place + _DIGITS].encode())
+            count += 1
+            if found.hexdigest().startswith(expected):
+                return count
+    return None
 
 
 _SHOWN = 3

@@ -18,7 +18,7 @@ from pareto_monoped.storage.connection import Connection
 from pareto_monoped.storage.kept_front import STATES, KeptFront, checked_front, foreign_count
 from pareto_monoped.storage.meta import StudyMeta
 from pareto_monoped.storage.place import StudyPlace, storage_of
-from pareto_monoped.storage.seals import ROWS, content_hash, damaged, has_seals
+from pareto_monoped.storage.seals import ROWS, damaged, has_seals
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,7 +73,7 @@ def read_summary(db: StudyPlace) -> Summary:
             left_to_gain=_left([*middle, *last]),
             ill_conditioned=sum(1 for row in audits if not row[1]),
             foreign=foreign_count(connection, checked.seals.trials),
-            content_hash=content_hash(checked.meta, checked.seals.parts),
+            content_hash=checked.seals.content_hash,
             sealed=True,
         )
 
