@@ -77,10 +77,8 @@ def importances(data: StudyData, names: Sequence[str]) -> dict[str, dict[str, fl
         warnings.simplefilter("ignore")  # that it is experimental, and that less is better
         study = optuna.create_study(storage=optuna.storages.InMemoryStorage())
         study.add_trials(
-            [
-                optuna.trial.create_trial(params=row, distributions=distributions, value=0.0, user_attrs=own)
-                for row, own in zip(rows, columns, strict=True)
-            ]
+            optuna.trial.create_trial(params=row, distributions=distributions, value=0.0, user_attrs=own)
+            for row, own in zip(rows, columns, strict=True)
         )
         optuna.logging.set_verbosity(verbosity)
         evaluator = optuna.importance.PedAnovaImportanceEvaluator()
