@@ -12,12 +12,9 @@ from numpy.typing import NDArray
 
 from pareto_monoped.analysis.at_bounds import front_alone
 from pareto_monoped.analysis.remarks import refuse_empty
-from pareto_monoped.analysis.robustness import refuse_other_jumps
-from pareto_monoped.compute.chunks import cores
 from pareto_monoped.definition.study import is_opened
 from pareto_monoped.design import PAPER_CASES
 from pareto_monoped.errors import ParetoMonopedError, SelectionError
-from pareto_monoped.jump.evaluate import Evaluator
 from pareto_monoped.pareto.objectives import HEIGHT_AND_ENERGY, Objectives
 from pareto_monoped.pareto.pick import Pick, condition_on, needs_front_only, pick
 from pareto_monoped.pareto.selectors import (
@@ -35,9 +32,6 @@ from pareto_monoped.pareto.selectors import (
 from pareto_monoped.storage.front_reader import StudyFront, least_stored
 from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.reader import StudyData, read_study
-from pareto_monoped.storage.store import Store
-from pareto_monoped.study.audits import audit_trials
-from pareto_monoped.study.simulator import stored_simulator
 
 BATTERY = "electrical_energy_j"
 HEIGHT_AND_BATTERY = Objectives(names=("height_m", BATTERY))
@@ -154,6 +148,8 @@ def headline(data: StudyData, chosen_trial: int) -> tuple[Competitor, ...]:
 
     The front may have none as high, and the chosen one may be behind it, see ``default_pick``.
     """
+    from pareto_monoped.jump.evaluate import Evaluator
+
     several = len(data.study.kits) > 1
     evaluations = Evaluator(data.case_kit, data.calibration)(CASE.design.as_array())
     simulated = Competitor(
@@ -318,6 +314,13 @@ def settled(data: StudyData, wanted: Callable[[StudyData], list[int]], *, notify
 
 
 def _audited(data: StudyData, trials: list[int]) -> StudyData:
+    # Imported here: most picks simulate nothing.
+    from pareto_monoped.analysis.robustness import refuse_other_jumps
+    from pareto_monoped.compute.chunks import cores
+    from pareto_monoped.storage.store import Store
+    from pareto_monoped.study.audits import audit_trials
+    from pareto_monoped.study.simulator import stored_simulator
+
     with storage_of(data.db).locked():
         # Somebody may have asked for the same since the study was read.
         now = read_study(data.db)

@@ -68,27 +68,22 @@ def importances(data: StudyData, names: Sequence[str]) -> dict[str, dict[str, fl
     } | {name: optuna.distributions.CategoricalDistribution(sorted(set(trials[name]))) for name in chosen}
     rated = [name for name in names if name in trials and trials[name].notna().all() and trials[name].nunique() > 1]
     # Less is better to Optuna.
-    values = {name: trials[name] * (-1.0 if measure(name).direction == "maximise" else 1.0) for name in rated}
-    columns = pd.DataFrame(values).to_dict(orient="records")
+    signs = {name: -1.0 if measure(name).direction == "maximise" else 1.0 for name in rated}
+    values = {name: (trials[name] * sign).to_numpy() for name, sign in signs.items()}
     rows = trials[[*free, *chosen]].to_dict(orient="records")
     verbosity = optuna.logging.get_verbosity()
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # that it is experimental, and that less is better
         study = optuna.create_study(storage=optuna.storages.InMemoryStorage())
-        study.add_trials(
-            [
-                optuna.trial.create_trial(params=row, distributions=distributions, value=0.0, user_attrs=own)
-                for row, own in zip(rows, columns, strict=True)
-            ]
-        )
+        study.add_trials(optuna.trial.create_trial(params=row, distributions=distributions, value=0.0) for row in rows)
         optuna.logging.set_verbosity(verbosity)
         evaluator = optuna.importance.PedAnovaImportanceEvaluator()
         found: dict[str, dict[str, float]] = {}
         for name in rated:
 
             def value(trial: optuna.trial.FrozenTrial, name: str = name) -> float:
-                return float(trial.user_attrs[name])
+                return float(values[name][trial.number])
 
             found[name] = optuna.importance.get_param_importances(study, evaluator=evaluator, target=value)
         return found

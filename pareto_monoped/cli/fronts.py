@@ -226,11 +226,9 @@ def pick(
     Conditions make the front, and one way to choose takes a design from it; without a way, the best one is taken.
     Measures and variables have their stored names and SI units.
     """
-    from pareto_monoped.analysis.alternatives import alternatives
     from pareto_monoped.analysis.at_bounds import binding_limits
     from pareto_monoped.analysis.choices import better_than, choose, choose_of, dear_words
     from pareto_monoped.pareto.trade_offs import one_more
-    from pareto_monoped.storage.extra_rows import read_limits, read_robustness
     from pareto_monoped.storage.front_reader import read_front
     from pareto_monoped.storage.reader import read_study
 
@@ -239,6 +237,7 @@ def pick(
     compared: RobustTrials | None = None
     if by_robust:
         from pareto_monoped.analysis.robustness import as_built
+        from pareto_monoped.storage.extra_rows import read_robustness
 
         known, compared = as_built(read_study(db), read_robustness(db), notify=note)
         chosen = choose(known, wanted, notify=note)
@@ -251,9 +250,15 @@ def pick(
     limits = binding_limits(chosen.data, picked.trial)
     dear = dear_words(db, rows[rows["trial"] == picked.trial].iloc[0])
     ahead = better_than(rows, picked.trial, data.study.objectives)
-    best = read_limits(db).get(picked.trial)
+    best = None
+    if data.limits:
+        from pareto_monoped.storage.extra_rows import read_limits  # which imports the simulator
+
+        best = read_limits(db).get(picked.trial)
     others: tuple[Alternative, ...] = ()
     if count:
+        from pareto_monoped.analysis.alternatives import alternatives
+
         others = alternatives(
             read_study(db),
             picked.trial,

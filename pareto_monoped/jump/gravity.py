@@ -113,17 +113,18 @@ def least_of_all_j(
         (steep, low), (flat, high) = ((slope[rows, None], constant[rows, None]) for slope, constant in lines)
         return np.maximum(np.maximum(steep * heights_m + low, flat * heights_m + high), 0.0)
 
-    least = np.full(len(heights_m), known_j)
-    rows = np.flatnonzero(np.isfinite(start_m))
-    parts = np.array_split(rows, len(rows) // _AT_ONCE + 1)
-    rows = np.concatenate([part[(bound(part) < least).any(axis=1)] for part in parts])
-    if not len(rows):
-        return least
-    bounds = bound(rows)
-    found, columns = bounds.argmin(axis=0), np.arange(len(heights_m))
-    for _ in range(2):
-        np.minimum.at(least, columns, least_energy_j(take(robots, rows[found]), calibration, heights_m[columns]))
-        found, columns = np.nonzero(bounds < least)
+    least, every = np.full(len(heights_m), known_j), np.arange(len(heights_m))
+    # After the first robots, few are near what those need.
+    for rows in np.split(np.flatnonzero(np.isfinite(start_m)), [_AT_ONCE]):
+        parts = np.array_split(rows, len(rows) // _AT_ONCE + 1)
+        near = np.concatenate([part[(bound(part) < least).any(axis=1)] for part in parts])
+        if not len(near):
+            continue
+        bounds, columns = bound(near), every
+        found = bounds.argmin(axis=0)
+        for _ in range(2):
+            np.minimum.at(least, columns, least_energy_j(take(robots, near[found]), calibration, heights_m[columns]))
+            found, columns = np.nonzero(bounds < least)
     return least
 
 

@@ -32,7 +32,7 @@ from pareto_monoped.report.resimulation import MOST_FRAMES, Resimulation, jumps_
 from pareto_monoped.report.robust import alternatives_of, best_of, influences_of, robust_of
 from pareto_monoped.report.schema import Model3D, Picked, StudyCard
 from pareto_monoped.report.summary import command, notes, provenance, sentences
-from pareto_monoped.report.trials import LETTERS, MOST_ROWS, audit_records, history_columns, thinned, trial_columns
+from pareto_monoped.report.trials import LETTERS, audit_records, history_columns, thinned, trial_columns
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.search.weighted import weighted_cost
 from pareto_monoped.storage.extra_rows import Stored, StoredLimit, StoredSensitivity
@@ -51,6 +51,7 @@ HEADLINES_M = (0.7, HEADLINE_HEIGHT_M, 0.9)
 FLOOR_HEIGHTS_M = (*np.round(np.arange(0.36, 2.0, 0.01), 2).tolist(), 2.5, 3.0, 4.0, 5.0, 7.0, 10.0)
 """Heights at which the floor of a front is computed. So near each other, straight lines between lie at most 10 mJ above
 it, and 0.1 J in the centimetre in which it leaves zero. From where no leg touches the ground, they lie below."""
+_AT_ONCE = 10_000  #: designs that are weighed together for it: 40 MB
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -203,7 +204,7 @@ def _floor_j(data: StudyData) -> list[float]:
     least = np.full(len(FLOOR_HEIGHTS_M), np.inf)
     for kit, rows in data.kit_rows(needed):
         rows = rows[jumped[rows]]
-        for some in np.array_split(rows, len(rows) // MOST_ROWS + 1):
+        for some in np.array_split(rows, len(rows) // _AT_ONCE + 1):
             designs = designs_of(needed.iloc[some])
             robots = robot_arrays(designs, kit, data.calibration.mass)
             least = least_of_all_j(robots, data.calibration, np.array(FLOOR_HEIGHTS_M), least)

@@ -28,6 +28,7 @@ class StudyFront:
     foreign: int  #: how many of Optuna's trials are not of this package
     content_hash: str  #: see ``seals.ContentHash``
     sealed: bool
+    limits: bool  #: whether ``extra_rows.read_limits`` has anything to read or to miss
 
 
 def read_front(db: StudyPlace) -> StudyFront:
@@ -48,6 +49,7 @@ def read_front(db: StudyPlace) -> StudyFront:
             foreign=foreign,
             content_hash=data.content_hash,
             sealed=data.sealed,
+            limits=True,
         )
 
 
@@ -89,4 +91,5 @@ def _kept(connection: Connection, db: StudyPlace) -> StudyFront:
         foreign=foreign_count(connection, checked.seals.trials),
         content_hash=checked.seals.content_hash,
         sealed=True,
+        limits="limits" in checked.seals.written or ("table", "monoped_limits") in connection.objects(),
     )

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,8 @@ it counts, from the first on. While a study with a long front runs, it may lack 
 STATES = ("feasible", "infeasible", "failed")
 _CHUNK = 500
 """Rows asked for at once: our own choice."""
+_BLOCK = 4_000
+"""Trials that are checked at once. Our own choice: 10 MB, as ``reader`` has it."""
 _SHARE = 16
 """The row is written again once so many times the new trials outnumber the front. Our own choice: a front of a thousand
 designs is written with every generation, and one of any length takes less than 200 bytes per trial."""
@@ -137,13 +140,16 @@ class CheckedFront:
 
     seals: Seals
     meta: StudyMeta
-    columns: list[str]  #: names of the columns of a trial
+    columns: list[str]  #: names of the columns of a trial that were kept
     #: the trials on the kept front and all that came after it, ascending: one that is bent may hide that it is on it
     trials: list[tuple[Any, ...]]
 
 
-def checked_front(connection: Connection, db: StudyPlace) -> CheckedFront:
-    """Read what is behind the front of a study that has a running hash; raise ``DatabaseError`` if it is damaged."""
+def checked_front(connection: Connection, db: StudyPlace, *, briefly: bool = False) -> CheckedFront:
+    """Read what is behind the front of a study that has a running hash; raise ``DatabaseError`` if it is damaged.
+
+    All columns of its trials are checked; if ``briefly``, only number, objectives, height and energy are kept.
+    """
     rows = {table: connection.execute(ROWS[table]).fetchall() for table in ("meta", "front")}
     meta = meta_of_rows(rows["meta"], db)
     numbers, counts, _ = kept_row(connection) if rows["front"] else ([], {}, set())
@@ -152,13 +158,20 @@ def checked_front(connection: Connection, db: StudyPlace) -> CheckedFront:
     if findings := [line for table in rows for line in seals.row_findings(table, rows[table])]:
         raise damaged(db, findings)
     columns = connection.columns("monoped_trials")
-    read = [*numbers, *range(sum(counts.values()), seals.trials)]
-    trials = rows_of(connection, columns, read)
-    if len(trials) < len(read):
-        raise damaged(db, ["trials of its kept front are missing"])
-    if trials and (findings := seals.trial_findings(dict(zip(columns, zip(*trials, strict=True), strict=True)), read)):
-        raise damaged(db, findings)
-    return CheckedFront(seals=seals, meta=meta, columns=columns, trials=trials)
+    read, trials = [*numbers, *range(sum(counts.values()), seals.trials)], []
+    objectives = objectives_of(meta.study["objectives"]).names
+    names = ["trial", *objectives, "height_m", "energy_j"] if briefly else columns
+    kept = itemgetter(*map(columns.index, names))
+    for first in range(0, len(read), _BLOCK):
+        some = read[first : first + _BLOCK]
+        rows_there = rows_of(connection, columns, some)
+        if len(rows_there) < len(some):
+            raise damaged(db, ["trials of its kept front are missing"])
+        values = dict(zip(columns, zip(*rows_there, strict=True), strict=True))
+        if findings := seals.trial_findings(values, some):
+            raise damaged(db, findings)
+        trials += map(kept, rows_there)
+    return CheckedFront(seals=seals, meta=meta, columns=names, trials=trials)
 
 
 def front_trials(db: StudyPlace) -> dict[int, str]:

@@ -80,10 +80,13 @@ def _trial_findings(connection: Connection, data: StudyData, numbers: Sequence[i
     place = {number: k for k, number in enumerate(numbers)}
     trials = data.trials
     failed = (trials["state"] == "failed").to_numpy()
-    stored = dict(connection.execute("SELECT number, state FROM trials").fetchall())
-    for number, k in place.items():
-        if stored.get(number) != (wanted := "FAIL" if failed[k] else "COMPLETE"):
-            yield f"trial {k} is {stored.get(number, 'missing')} in Optuna's tables, must be {wanted}"
+    stored, words = ["missing"] * len(numbers), dict[str, str]()  # the same text once, not once per row
+    for number, state in connection.execute("SELECT number, state FROM trials"):
+        if (k := place.get(number)) is not None:
+            stored[k] = words.setdefault(state, state)
+    for k, state in enumerate(stored):
+        if state != (wanted := "FAIL" if failed[k] else "COMPLETE"):
+            yield f"trial {k} is {state} in Optuna's tables, must be {wanted}"
             break
     names = list(data.study.objectives.names)
     values = trials[names].to_numpy(dtype=np.float64)

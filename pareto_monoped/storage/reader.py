@@ -415,7 +415,11 @@ def read_study(db: StudyPlace) -> StudyData:
             findings += [line for table in rows for line in seals.row_findings(table, rows[table])]
         if findings:
             raise damaged(db, findings)
-        parts: Parts = [(range(len(trials)), tuple(columns), "".join(trial_digests(columns, trials)))] if seals is None else seals.parts
+        parts: Parts = (
+            [(range(len(trials)), tuple(columns), "".join(trial_digests(columns, trials)))]
+            if seals is None
+            else seals.parts
+        )
         return StudyData(
             db=db,
             study=study,

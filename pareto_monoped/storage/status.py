@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -49,7 +48,7 @@ def read_summary(db: StudyPlace) -> Summary:
     with undamaged(db), storage_of(db).reading() as connection:
         if not has_seals(connection):
             return _computed(connection, db)
-        checked = checked_front(connection, db)
+        checked = checked_front(connection, db, briefly=True)
         last = connection.execute(f"{ROWS['history']} DESC LIMIT 1").fetchall()
         audits = connection.execute(ROWS["audits"]).fetchall()
         middle = _around_half(connection, last[0][1]) if last else []
@@ -61,9 +60,8 @@ def read_summary(db: StudyPlace) -> Summary:
         study = study_from_dict(checked.meta.study, source=f"study database {str(db)!r}")
         kept = KeptFront(study.objectives)
         kept.load(connection)
-        values = itemgetter(*map(checked.columns.index, ("trial", *study.objectives.names, "height_m", "energy_j")))
         numbers = set(kept.numbers)
-        rows = np.array([row for row in map(values, checked.trials) if row[0] in numbers], dtype=np.float64)
+        rows = np.array([row for row in checked.trials if row[0] in numbers], dtype=np.float64)
         return _summary(
             rows.reshape(-1, len(study.objectives.names) + 3)[:, 1:],
             study=study,

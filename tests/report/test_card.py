@@ -74,7 +74,7 @@ def test_no_trial_lies_below_the_floor_and_the_floor_is_that_of_some_design(data
 
 
 def test_a_floor_of_more_trials_than_are_searched_at_once_is_that_of_all(data, payload, monkeypatch):
-    monkeypatch.setattr(card_module, "MOST_ROWS", 60)
+    monkeypatch.setattr(card_module, "_AT_ONCE", 60)
     many = replace(data, trials=data.trials.sort_values("mass_kg", ignore_index=True))
     assert len(many.trials) > 3 * 60
     assert _floor_j(many) == payload.studies[0].floor_j

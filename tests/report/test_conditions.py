@@ -235,7 +235,7 @@ def test_what_conditions_bring_to_the_front_is_audited_before_it_is_the_answer(a
 
 def test_a_design_that_fails_its_audit_is_not_the_answer(audited, monkeypatch):
     """The audit of whatever is asked for first fails; the next best design by brute force is the answer."""
-    from pareto_monoped.analysis import choices
+    from pareto_monoped.study import audits
 
     data = read_study(audited)
     conditions = (Condition(name="mass_kg", side="max", value=brought(data)[0].value * 1.01),)
@@ -246,7 +246,7 @@ def test_a_design_that_fails_its_audit_is_not_the_answer(audited, monkeypatch):
     def failing(now, trials, store, simulator):
         store.set_audits([(int(n), int(n) not in fails, {"reason": "made to fail"}) for n in trials["trial"]])
 
-    monkeypatch.setattr(choices, "audit_trials", failing)
+    monkeypatch.setattr(audits, "audit_trials", failing)
     chosen = choose(pm.load_study(audited).data, Among(conditions=conditions), notify=print)
     left = [n for n in order if n not in set(read_study(audited).ill_conditioned.tolist())]
     assert chosen.picked.trial == left[0]

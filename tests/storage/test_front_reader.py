@@ -1,8 +1,10 @@
 """What is read without all trials: the kept front, the status."""
 
 import shutil
+import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +13,8 @@ import pytest
 from pareto_monoped.analysis.verify import verify
 from pareto_monoped.design import in_use
 from pareto_monoped.errors import DatabaseError
+from pareto_monoped.storage import file as file_module
+from pareto_monoped.storage.file import FileConnection
 from pareto_monoped.storage.front_reader import least_stored, read_front
 from pareto_monoped.storage.kept_front import kept_row
 from pareto_monoped.storage.place import storage_of
@@ -227,3 +231,18 @@ def test_a_large_checkpoint_costs_them_nothing(tmp_path, code):
         peaks.append(int(alone(f"{code}{PEAK_KB}", tmp_path / name)))
     assert (tmp_path / "large.db").stat().st_size > 50e6
     assert peaks[1] - peaks[0] < 10_000  # of the 49,000 kB that reading it would take at least
+
+
+@pytest.mark.parametrize("count", [0, 1, 4, 5, 6, 9, 10, 13, 14])
+@pytest.mark.parametrize(
+    "statement",
+    ["", "DELETE FROM t WHERE k = {0} - 2", "UPDATE t SET k = k + 1 WHERE k = {0} - 1", "INSERT INTO t VALUES (-1)"],
+)
+def test_numbers_are_compared_stretch_by_stretch_as_one_by_one(monkeypatch, count, statement):
+    monkeypatch.setattr(file_module, "_STRETCH", 5)
+    with closing(sqlite3.connect(":memory:", factory=FileConnection)) as connection:
+        connection.execute("CREATE TABLE t (k INTEGER PRIMARY KEY)")
+        connection.executemany("INSERT INTO t VALUES (?)", [(k,) for k in range(count)])
+        connection.execute(statement.format(count))
+        found = [k for (k,) in connection.execute("SELECT k FROM t ORDER BY k")]
+        assert connection.counted("t", "k") == (len(found) if found == list(range(len(found))) else None)

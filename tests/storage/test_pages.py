@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from pareto_monoped.errors import DatabaseError
+from pareto_monoped.storage import file as file_module
 from pareto_monoped.storage.front_reader import read_front
 from pareto_monoped.storage.reader import read_study
 from pareto_monoped.storage.status import status
@@ -32,6 +33,12 @@ def made(tmp_path_factory):
         pages = [page for (page,) in connection.execute(sql)]
     assert len(pages) > 5
     return path.read_bytes(), earlier, pages
+
+
+@pytest.fixture(params=[10_000, 7], autouse=True)
+def stretch(request, monkeypatch):
+    """So many numbers are compared at once."""
+    monkeypatch.setattr(file_module, "_STRETCH", request.param)
 
 
 def pages_of(content):
