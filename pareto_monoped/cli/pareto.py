@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 _OPENED_SHARE = 2
 """Of how many jumps of the study the one with more variables free has one. Our own choice: half of the shipped study's
-4,000 show what opening saves, 14 to 28 percent. More would show more: three seeds with 8,000 jumps found designs that
+4,000 show what opening saves, 13 to 31 percent. More would show more: three seeds with 8,000 jumps found designs that
 take 4 to 15 percent less than theirs with 2,000 somewhere on the front."""
 
 
