@@ -111,7 +111,7 @@ def least_of_all_j(
 
     def bound(rows: NDArray[np.intp]) -> Floats:
         (steep, low), (flat, high) = ((slope[rows, None], constant[rows, None]) for slope, constant in lines)
-        return np.maximum(np.maximum(steep * heights_m + low, flat * heights_m + high), 0.0)
+        return np.asarray(np.maximum(np.maximum(steep * heights_m + low, flat * heights_m + high), 0.0))
 
     least, every = np.full(len(heights_m), known_j), np.arange(len(heights_m))
     # After the first robots, few are near what those need.

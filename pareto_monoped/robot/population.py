@@ -127,7 +127,7 @@ def robot_arrays(designs: ArrayLike, maps: Maps, options: MassOptions = PARTS_ON
     leg = leg_dimensions(both)
     intervals = {joint: both.of(joint).interval_index(values[:, NAMES.index(f"{joint}_ratio")]) for joint in JOINTS}
     reason = [""] * len(values)
-    for i in np.flatnonzero(np.minimum(intervals["hip"], intervals["knee"]) < 0):
+    for i in np.flatnonzero(np.minimum(intervals["hip"], intervals["knee"]) < 0).tolist():
         reason[i] = _missing(both, intervals, values, i)
     tables = {joint: actuator_table(both.of(joint)) for joint in JOINTS}
     rows = {joint: tables[joint].row[np.maximum(intervals[joint], 0)] for joint in JOINTS}

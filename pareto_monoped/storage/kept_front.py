@@ -158,7 +158,8 @@ def checked_front(connection: Connection, db: StudyPlace, *, briefly: bool = Fal
     if findings := [line for table in rows for line in seals.row_findings(table, rows[table])]:
         raise damaged(db, findings)
     columns = connection.columns("monoped_trials")
-    read, trials = [*numbers, *range(sum(counts.values()), seals.trials)], []
+    read = [*numbers, *range(sum(counts.values()), seals.trials)]
+    trials: list[tuple[Any, ...]] = []
     objectives = objectives_of(meta.study["objectives"]).names
     names = ["trial", *objectives, "height_m", "energy_j"] if briefly else columns
     kept = itemgetter(*map(columns.index, names))

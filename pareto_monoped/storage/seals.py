@@ -225,14 +225,13 @@ def read_seals(
         if columns:
             names = tuple(parsed_json(columns))
         if raw:
-            own: Numbers = range(first, first + len(raw) // _DIGITS)
+            there = range(first, first + len(raw) // _DIGITS)
             if content is not None:
                 content.add(names, raw)
             if columns or not parts or first != trials:
                 parts.append(([], names, []))
-            trials = own.stop
-            if first < since:
-                own, raw = _some(own, raw, numbers, since)
+            trials = there.stop
+            own, raw = (there, raw) if first >= since else _some(there, raw, numbers, since)
             parts[-1][0].append(own)
             parts[-1][2].append(raw)
         for table, digests_of_rows in parsed_json(text).items():
