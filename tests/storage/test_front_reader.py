@@ -87,6 +87,17 @@ def test_the_least_of_a_height_is_that_of_all_feasible_trials_but_those_that_fai
     assert least_stored(large, "no_measure", 0.5) is None
 
 
+def test_a_damaged_trial_does_not_hide_the_least_from_pick(large, monkeypatch):
+    """A flipped byte off the front made `pick` say nothing of a design that is dear at the battery."""
+    front = read_front(large).rows["trial"]
+    other = read_study(large).sound["trial"]
+    change(large, f"UPDATE monoped_trials SET energy_j = 1e6 WHERE trial = {other[~other.isin(front)].iloc[0]}")
+    with pytest.raises(DatabaseError, match="does not match its hash"):
+        least_stored(large, "energy_j", 0.5)
+    monkeypatch.setattr("pareto_monoped.storage.front_reader._WHOLE", 10)
+    assert least_stored(large, "energy_j", 0.5) is None
+
+
 def test_the_front_is_read_without_the_other_trials_and_the_checkpoint(large):
     """Damage elsewhere is not seen by what does not read it; on the front it is."""
     front = read_front(large).rows["trial"]
