@@ -88,9 +88,19 @@ def search_landscapes():
     by = {name: found[0] - found[1:].max() for name, found in shares.items()}
     far = [name for name, gap in by.items() if gap > 10.0]
     assert sorted(far) == ["dtlz2", "dtlz2-3", "dtlz7", "osy", "zdt3", "zdt6"]
-    assert sorted(name for name, gap in by.items() if 0.0 < gap <= 10.0) == ["bnh", "c2dtlz2", "srn", "tnk", "zdt4"]
-    assert sorted(name for name, gap in by.items() if gap < 0.0) == ["kursawe", "mw7", "wfg4"]
+    assert sorted(name for name, gap in by.items() if 0.0 < gap <= 10.0) == [
+        "bnh",
+        "kursawe",
+        "srn",
+        "tnk",
+        "wfg4",
+        "zdt4",
+    ]
+    assert sorted(name for name, gap in by.items() if gap < 0.0) == ["c2dtlz2", "mw7"]
     assert shares["mw1"].eq(0.0).all()
+    near = table(page, "said after", "within a factor of two").set_index("said after")["within a factor of two"]
+    yield f"after 1,000 evaluations, {near[1000]:.0f} of 20 estimates are within a factor of two of what was gained"
+    yield f"after 300, {near[300]:.0f}; most promise too much then"
     with imported("search_limits") as script:
         limits = [next(iter(limit.values())) for limit in script.TIGHT.values()]
         knots = script.STUDIES["torque over time"][1]["controller"]["knots"]
