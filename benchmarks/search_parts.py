@@ -1,7 +1,7 @@
 """What each part of the default search is worth: the hypervolume that a search without it has, on nine landscapes.
 
     python benchmarks/search_parts.py          # a short look: two parts on two landscapes
-    python benchmarks/search_parts.py --full   # every part on every landscape: the table of search_parts.md
+    python benchmarks/search_parts.py --full   # every part on every landscape: half an hour
 
 Each part is taken out by a value of its constant at which it does nothing. The seeds are the same with and without it,
 but the searches then take other courses, so a difference means little that is not beyond the spread of the whole
