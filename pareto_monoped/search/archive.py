@@ -29,8 +29,8 @@ _FEW_DESIGNS = 300
 """Up to which a Gaussian process predicts. Our own choice: with 500, a search of 1,000 designs takes two and a half
 times as long and finds as much."""
 _MOST = 12_000
-"""Designs that an archive holds at most. Our own choice: half as many again as the main job has, so that the time per
-design stays what it is there, however long a search goes on."""
+"""Designs that an archive holds at most. Our own choice: half as many again as the longest shipped study of this search
+has, so that the time per design stays what it is there, however long a search goes on."""
 _KEPT = 8_000
 """Designs that stay when there are more."""
 

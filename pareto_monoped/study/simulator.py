@@ -89,7 +89,7 @@ class Simulator:
 
 _BEFORE, _BEGUN = 800, 40
 """Jumps under the virtual leg before a study with another law begins, and designs that it begins with. Our own choice:
-a tenth of the main job's jumps, and a generation."""
+a fifth of the main job's jumps, and a generation."""
 
 
 def _begun(study: Study, evaluator: Evaluator) -> Floats:
