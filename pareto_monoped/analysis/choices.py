@@ -29,7 +29,7 @@ from pareto_monoped.pareto.selectors import (
     column,
     required_fits,
 )
-from pareto_monoped.storage.front_reader import StudyFront, least_stored
+from pareto_monoped.storage.front_reader import StudyFront
 from pareto_monoped.storage.place import StudyPlace, storage_of
 from pareto_monoped.storage.reader import StudyData, read_study
 
@@ -204,13 +204,28 @@ def is_dear(rows: pd.DataFrame, studies: Sequence[StudyData]) -> NDArray[np.bool
     return np.asarray(column(rows, BATTERY) > limits)
 
 
-def dear_words(db: StudyPlace, row: "pd.Series[Any]") -> str:
-    """Return the sentence that marks a trial that takes much more from the battery than another; empty for others."""
+_WHOLE = 20_000
+"""Trials of a study up to which all are read to mark a pick. Our own choice: that takes a second."""
+
+
+def whole(data: StudyData, kept: StudyFront) -> StudyData | None:
+    """Return a study with all of its trials, for which it is read if only its front was; None if it has too many."""
+    if len(data.trials) == kept.count:
+        return data
+    return read_study(kept.db) if kept.count <= _WHOLE else None
+
+
+def dear_words(data: StudyData | None, row: "pd.Series[Any]") -> str:
+    """Return the sentence that marks a trial that takes much more from the battery than another; empty for others.
+
+    Any trial may have the least, so all of ``data`` are looked at, but for those that failed their audit.
+    """
     height_m, energy_j = float(row["height_m"]), float(row.get(BATTERY, math.nan))
-    if not (math.isfinite(height_m) and math.isfinite(energy_j)):
+    if data is None or not (math.isfinite(height_m) and math.isfinite(energy_j)):
         return ""
-    least_j = least_stored(db, BATTERY, height_m)
-    if least_j is None or least_j <= 0.0 or energy_j <= DEAR * least_j:
+    sound = data.sound
+    least_j = float(np.fmin.reduce(column(sound[sound["height_m"] >= height_m], BATTERY), initial=math.inf))
+    if least_j <= 0.0 or energy_j <= DEAR * least_j:
         return ""
     return (
         f"dear at the battery: takes {energy_j:.2f} J from it, {energy_j / least_j:.1f} times the least that is stored "

@@ -219,7 +219,7 @@ class StoredStudy:
         data = self._by_robustness() if truth_of("robust", robust) else self.data
         found = choose(data, wanted, chosen, notify=warnings.warn).picked
         row = data.trials[data.trials["trial"] == found.trial].iloc[0]
-        dear = dear_words(self.path, row)
+        dear = dear_words(self.data, row)
         return Picked(trial=found.trial, design=self.design(found.trial), row=row, why=found.why, dear=dear)
 
     def design(self, trial: int) -> Design:

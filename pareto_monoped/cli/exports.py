@@ -121,11 +121,10 @@ def export(
         else:
             from pareto_monoped.analysis.choices import choose, dear_words
 
-            study, wanted = _given(db), required(selector)
-            chosen = choose(_read(study), wanted, notify=note)
+            chosen = choose(_read(_given(db)), required(selector), notify=note)
             _note(wrapped(chosen.picked.why))
             row = chosen.rows[chosen.rows["trial"] == chosen.picked.trial].iloc[0]
-            if dear := dear_words(study, row):
+            if dear := dear_words(chosen.data, row):
                 note(dear)
             _one(_without(dropped, trial_job(chosen.data, chosen.picked.trial, **asked, **angles)))
 

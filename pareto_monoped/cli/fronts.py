@@ -227,7 +227,7 @@ def pick(
     Measures and variables have their stored names and SI units.
     """
     from pareto_monoped.analysis.at_bounds import binding_limits
-    from pareto_monoped.analysis.choices import better_than, choose, choose_of, dear_words
+    from pareto_monoped.analysis.choices import better_than, choose, choose_of, dear_words, whole
     from pareto_monoped.pareto.trade_offs import one_more
     from pareto_monoped.storage.front_reader import read_front
     from pareto_monoped.storage.reader import read_study
@@ -239,16 +239,18 @@ def pick(
         from pareto_monoped.analysis.robustness import as_built
         from pareto_monoped.storage.extra_rows import read_robustness
 
-        known, compared = as_built(read_study(db), read_robustness(db), notify=note)
+        stored = read_study(db)
+        known, compared = as_built(stored, read_robustness(db), notify=note)
         chosen = choose(known, wanted, notify=note)
     else:
         chosen = choose_of(data, wanted, notify=note)
+        stored = chosen.data
     rows, picked = chosen.rows, chosen.picked
     names = shown_columns(data.study, data.used, data.study.objectives)
     # Robustness is known of some designs only, which may lie many steps apart.
     step = one_more(rows, picked.trial, data.study.objectives, between=by_robust)
     limits = binding_limits(chosen.data, picked.trial)
-    dear = dear_words(db, rows[rows["trial"] == picked.trial].iloc[0])
+    dear = dear_words(whole(stored, data), rows[rows["trial"] == picked.trial].iloc[0])
     ahead = better_than(rows, picked.trial, data.study.objectives)
     best = None
     if data.limits:

@@ -25,6 +25,7 @@ class StudyFront:
     rows: pd.DataFrame  #: as ``StudyData.front`` returns them
     #: the paper's seven variables, and the optional ones of which some trial has another value than the default
     used: tuple[Variable, ...]
+    count: int  #: number of all trials of the study
     foreign: int  #: how many of Optuna's trials are not of this package
     content_hash: str  #: see ``seals.ContentHash``
     sealed: bool
@@ -46,30 +47,12 @@ def read_front(db: StudyPlace) -> StudyFront:
             meta=data.meta,
             rows=rows,
             used=used,
+            count=len(data.trials),
             foreign=foreign,
             content_hash=data.content_hash,
             sealed=data.sealed,
             limits=True,
         )
-
-
-_WHOLE = 20_000
-"""Trials of a study up to which all are read for the least of a measure. Our own choice: that takes a second."""
-
-
-def least_stored(db: StudyPlace, name: str, height_m: float) -> float | None:
-    """Return the least of a measure in the feasible trials of at least a height; None where none has a value.
-
-    Trials that failed their audit do not count. Any trial may have the least, so all are read and checked. None in a
-    study of more than ``_WHOLE`` trials, for which that takes longer than choosing.
-    """
-    with undamaged(db), storage_of(db).reading() as connection:
-        (count,) = connection.execute("SELECT count(*) FROM monoped_trials").fetchone()
-    if count > _WHOLE:
-        return None
-    rows = read_study(db).sound
-    high = rows.loc[rows["height_m"] >= height_m, name].dropna() if name in rows else rows["height_m"][:0]
-    return float(high.min()) if len(high) else None
 
 
 def _kept(connection: Connection, db: StudyPlace) -> StudyFront:
@@ -91,6 +74,7 @@ def _kept(connection: Connection, db: StudyPlace) -> StudyFront:
         meta=meta,
         rows=front,
         used=used,
+        count=checked.seals.trials,
         foreign=foreign_count(connection, checked.seals.trials),
         content_hash=checked.seals.content_hash,
         sealed=True,

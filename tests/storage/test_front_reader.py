@@ -5,17 +5,21 @@ import sqlite3
 import subprocess
 import sys
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
+from pareto_monoped.analysis.at_bounds import front_alone
+from pareto_monoped.analysis.choices import dear_words, whole
 from pareto_monoped.analysis.verify import verify
 from pareto_monoped.design import in_use
 from pareto_monoped.errors import DatabaseError
 from pareto_monoped.storage import file as file_module
 from pareto_monoped.storage.file import FileConnection
-from pareto_monoped.storage.front_reader import least_stored, read_front
+from pareto_monoped.storage.front_reader import read_front
 from pareto_monoped.storage.kept_front import kept_row
 from pareto_monoped.storage.place import storage_of
 from pareto_monoped.storage.reader import read_study
@@ -73,29 +77,35 @@ def test_the_kept_front_reads_as_the_front_of_all_trials(large, statements):
     assert facts["wall_time_s"] == data.wall_time_s
 
 
-def test_the_least_of_a_height_is_that_of_all_feasible_trials_but_those_that_failed_their_audit(large):
+def test_a_pick_is_dear_by_the_least_of_all_feasible_trials_but_those_that_failed_their_audit(large):
     data = read_study(large)
+    data = replace(data, trials=data.trials.assign(electrical_energy_j=data.trials["energy_j"]))
     ill = data.audits.loc[~data.audits["well_conditioned"].astype(bool), "trial"]
     told = 0
     for height_m in (0.0, *np.linspace(0.5, 1.0, 41), *data.front()["height_m"], 2.0):
         high = data.trials[(data.trials["state"] == "feasible") & (data.trials["height_m"] >= height_m)]
         expected = high.loc[~high["trial"].isin(ill), "energy_j"].min()
-        found = least_stored(large, "energy_j", height_m)
-        assert found == expected or (found is None and np.isnan(expected))
+        row = pd.Series({"height_m": height_m, "electrical_energy_j": 1e4})
+        assert f"stored for this height, {expected:.2f} J" in dear_words(data, row) or np.isnan(expected)
+        cheap = pd.Series({"height_m": height_m, "electrical_energy_j": 1.49 * expected})
+        assert dear_words(data, cheap) == ""
         told += high["energy_j"].min() < expected
     assert told
-    assert least_stored(large, "no_measure", 0.5) is None
 
 
 def test_a_damaged_trial_does_not_hide_the_least_from_pick(large, monkeypatch):
     """A flipped byte off the front made `pick` say nothing of a design that is dear at the battery."""
-    front = read_front(large).rows["trial"]
+    kept = read_front(large)
+    alone = front_alone(kept)
     other = read_study(large).sound["trial"]
-    change(large, f"UPDATE monoped_trials SET energy_j = 1e6 WHERE trial = {other[~other.isin(front)].iloc[0]}")
+    rest = other[~other.isin(kept.rows["trial"])]
+    assert len(whole(alone, kept).trials) == kept.count > len(alone.trials)
+    change(large, f"UPDATE monoped_trials SET energy_j = 1e6 WHERE trial = {rest.iloc[0]}")
     with pytest.raises(DatabaseError, match="does not match its hash"):
-        least_stored(large, "energy_j", 0.5)
-    monkeypatch.setattr("pareto_monoped.storage.front_reader._WHOLE", 10)
-    assert least_stored(large, "energy_j", 0.5) is None
+        whole(alone, kept)
+    monkeypatch.setattr("pareto_monoped.analysis.choices._WHOLE", 10)
+    assert whole(alone, kept) is None
+    assert dear_words(None, kept.rows.iloc[0]) == ""
 
 
 def test_the_front_is_read_without_the_other_trials_and_the_checkpoint(large):
