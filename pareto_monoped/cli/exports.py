@@ -121,7 +121,8 @@ def export(
         else:
             from pareto_monoped.analysis.choices import choose, dear_words
 
-            chosen = choose(_read(_given(db)), required(selector), notify=note)
+            study, wanted = _given(db), required(selector)
+            chosen = choose(_read(study), wanted, notify=note)
             _note(wrapped(chosen.picked.why))
             row = chosen.rows[chosen.rows["trial"] == chosen.picked.trial].iloc[0]
             if dear := dear_words(chosen.data, row):
