@@ -207,8 +207,8 @@ def read_seals(
 ) -> Seals:
     """Read the chain, and raise ``DatabaseError`` unless its links follow from each other.
 
-    Digests are kept of the trials with these ``numbers``, ascending, and of all ``since`` one, so by default of all.
-    The content hash is made if ``meta`` is given: all digests of a large study need not be in memory for it.
+    Keep the digests of the trials with these ``numbers``, ascending, and of all from the number ``since`` on: by
+    default, of all trials. If ``meta`` is given, compute the content hash, too, while the chain is read.
     """
     parts: list[tuple[list[Numbers], tuple[str, ...], list[bytes]]] = []
     names: tuple[str, ...] = ()
