@@ -209,7 +209,7 @@ _WHOLE = 20_000
 
 
 def whole(data: StudyData, kept: StudyFront) -> StudyData | None:
-    """Return a study with all its trials, reading it if only its front was read; None if it has more than ``_WHOLE``."""
+    """Return a study with all its trials, read anew if only its front was; None if it has more than ``_WHOLE``."""
     if len(data.trials) == kept.count:
         return data
     return read_study(kept.db) if kept.count <= _WHOLE else None
