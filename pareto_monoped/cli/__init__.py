@@ -4,7 +4,7 @@ Numbers go to stdout, messages and progress to stderr. Bad input ends with one l
 running with 1, an interrupt with 130.
 
 Order of imports, lowest first: actuator_sheets, terminal; options, process, watching; actuators, campaign, jumps,
-machines, pareto, selection, stored, studies; exports, fronts, limit, robustness.
+machines, selection, stored, studies; exports, fronts, limit, pareto, robustness.
 """
 
 import difflib

@@ -8,6 +8,7 @@ import tomllib
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,6 +24,7 @@ from pareto_monoped.compute.processes import Processes, say
 if TYPE_CHECKING:
     from pareto_monoped.analysis.choices import Choice
     from pareto_monoped.definition.study import Study
+    from pareto_monoped.report.schema import Payload
     from pareto_monoped.storage.reader import StudyData
 
 _OPENED_SHARE = 2
@@ -89,8 +91,9 @@ def pareto(
 
     for motor, path in tables.items():
         steps.do("actuators", "--motor", motor, "--csv", path)
+    several_cores = (workers or cores()) > 1
     # No study needs another. Where there is a report, all are most likely finished.
-    _search(list(runs.values()), steps, side_by_side=not report.exists() and (workers or cores()) > 1)
+    _search(list(runs.values()), steps, side_by_side=not report.exists() and several_cores)
     studies = [read_study(path) for path in dbs]
     refuse_empty(studies[0].front(), studies[0])
 
@@ -102,10 +105,17 @@ def pareto(
     studies[0], chosen = first, begins_with(first)
     design = cad / f"trial_{chosen}"
     job = trial_job(studies[0], chosen, folder=design)
-    again = ["--force"] if (design / "design.json").exists() and not is_made(job) else []
-    steps.do("export", db, "--trial", chosen, "-o", design, *again, made=lambda: is_made(job))
-    sources = (*dbs, design / "design.json")
-    steps.do("report", *dbs, "-o", report, "--exports", cad, made=lambda: _newer(report, *sources))
+    exported = is_made(job)
+    again = ["--force"] if (design / "design.json").exists() and not exported else []
+    with contextlib.ExitStack() as stack:
+        finish = None
+        if not exported and several_cores:
+            # The page's content but for this export takes as long as the export.
+            content = stack.enter_context(_Ahead(_content, dbs))
+            finish = partial(_finish_page, content, cad, studies, report)
+        steps.do("export", db, "--trial", chosen, "-o", design, *again, made=lambda: exported)
+        sources = (*dbs, design / "design.json")
+        steps.do("report", *dbs, "-o", report, "--exports", cad, made=lambda: _newer(report, *sources), by=finish)
 
     echo("\nMade")
     several = len(studies) > 1
@@ -156,10 +166,15 @@ class _Steps:
     total: int
     done: int = 0
 
-    def do(self, *command: object, made: Callable[[], bool] = lambda: False, ahead: "_Ahead | None" = None) -> None:
+    def do(
+        self,
+        *command: object,
+        made: Callable[[], bool] = lambda: False,
+        by: Callable[[], int | None] | None = None,
+    ) -> None:
         """Run one of our own commands as a user would. Show the command, but not what it prints to stdout.
 
-        One that has begun ``ahead`` only comes to its end here.
+        One that was begun ahead comes to its end ``by`` another call, which returns the exit code.
         """
         self.done += 1
         words = [str(word) for word in command]
@@ -167,7 +182,7 @@ class _Steps:
         ending = "  (up to date)" if up_to_date else ""
         echo(f"[{self.done}/{self.total}] pareto-monoped {' '.join(words)}{ending}", err=True)
         if not up_to_date:
-            code = ahead.code() if ahead else _code_of(words)
+            code = by() if by else _code_of(words)
             if code:
                 raise click.exceptions.Exit(code)
 
@@ -182,15 +197,15 @@ def _code_of(words: Sequence[str]) -> int | None:
 
 
 class _Ahead:
-    """A context in which a command runs in a process of its own; its messages wait until its code is asked for.
+    """A context in which a call is made in a process of its own; its messages wait until its result is asked for.
 
     The process ends with the context. Of a study that is cut short so, everything is stored but one generation.
     """
 
-    def __init__(self, command: Sequence[object]) -> None:
+    def __init__(self, function: Callable[..., Any], *arguments: object) -> None:
         self._lock, self._waiting, self._heard = threading.Lock(), True, ""
         self._process = Processes(hear=self._hear)
-        self._future = self._process.submit(_code_elsewhere, [str(word) for word in command])
+        self._future = self._process.submit(_elsewhere, function, *arguments)
 
     def __enter__(self) -> "_Ahead":
         return self
@@ -198,13 +213,12 @@ class _Ahead:
     def __exit__(self, *problem: Any) -> None:
         self._process.__exit__(*problem)
 
-    def code(self) -> int | None:
-        """Show what the command has said and what it says from now on; return its exit code or raise its error."""
+    def result(self) -> Any:
+        """Show what the call has said and what it says from now on; return its result or raise its error."""
         with self._lock:
             self._waiting = False
             echo(self._heard, err=True, nl=False)
-        code: int | None = self._future.result()
-        return code
+        return self._future.result()
 
     def _hear(self, text: str) -> None:
         with self._lock:
@@ -223,10 +237,24 @@ class _Told(io.StringIO):
         return count
 
 
-def _code_elsewhere(words: Sequence[str]) -> int | None:
+def _elsewhere(function: Callable[..., Any], *arguments: object) -> Any:
     warnings.simplefilter("ignore")  # they are for developers
     with contextlib.redirect_stderr(_Told()):
-        return _code_of(words)
+        return function(*arguments)
+
+
+def _content(dbs: Sequence[Path]) -> "Payload":
+    """Return the content of the job's page without exported designs."""
+    from pareto_monoped.report.page import payload_of
+
+    return payload_of(dbs, note=note)
+
+
+def _finish_page(content: _Ahead, cad: Path, studies: "Sequence[StudyData]", report: Path) -> None:
+    from pareto_monoped.cli.stored import write_page
+    from pareto_monoped.report.page import with_exports
+
+    write_page(with_exports(content.result(), cad, studies, note), report)
 
 
 def _searches(
@@ -265,9 +293,10 @@ def _searches(
 def _search(runs: Sequence[tuple[object, ...]], steps: _Steps, *, side_by_side: bool) -> None:
     """Run the studies, all of them at the same time if they are to be ``side_by_side``."""
     with contextlib.ExitStack() as stack:
-        ahead = [stack.enter_context(_Ahead(run)) if side_by_side else None for run in runs[1:]]
+        others = [[str(word) for word in run] for run in runs[1:]]
+        ahead = [stack.enter_context(_Ahead(_code_of, run)).result if side_by_side else None for run in others]
         for run, begun in zip(runs, (None, *ahead), strict=True):
-            steps.do(*run, ahead=begun)
+            steps.do(*run, by=begun)
 
 
 def _by(data: "StudyData", studies: "Sequence[StudyData]") -> str:

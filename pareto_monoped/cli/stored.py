@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
     from pandas import DataFrame
 
+    from pareto_monoped.report.schema import Payload
+
 
 class ContentHash(click.ParamType[str]):
     """A content hash, or at least so many of its leading digits that no other study has them by chance."""
@@ -201,8 +203,8 @@ def report(
     """
     if output is None and figures is None:
         raise click.UsageError("no output given: must be -o FILE.html, --figures DIR, or both; add one")
-    from pareto_monoped.files import refuse_database, write_text
-    from pareto_monoped.report.page import page, payload_of
+    from pareto_monoped.files import refuse_database
+    from pareto_monoped.report.page import payload_of
 
     if output is not None:
         refuse_database(output)
@@ -210,13 +212,21 @@ def report(
     most_jumps = 0 if no_jumps else 1 if output is None else None
     payload = payload_of(dbs, exports=exports, most_jumps=most_jumps, note=note)
     if output is not None:
-        write_text(output, page(payload), force=force)
-        echo(f"wrote {output} ({output.stat().st_size / 1e6:.1f} MB)", err=True)
+        write_page(payload, output, force=force)
     if figures is not None:
         from pareto_monoped.report.figures import write_figures
 
         for path in write_figures(payload, figures, force=force):
             echo(f"wrote {path}", err=True)
+
+
+def write_page(payload: "Payload", output: Path, *, force: bool = False) -> None:
+    """Write a page with a content, and say so."""
+    from pareto_monoped.files import write_text
+    from pareto_monoped.report.page import page
+
+    write_text(output, page(payload), force=force)
+    echo(f"wrote {output} ({output.stat().st_size / 1e6:.1f} MB)", err=True)
 
 
 @click.command()

@@ -4,4 +4,4 @@ Order of imports, lowest first: schema; exports, front_figure, packing, quantiti
 resimulation, robust, tables, trials; context, summary; card; page.
 """
 
-__all__ = ["figures", "page", "quantities", "tables"]
+__all__ = ["figures", "page", "quantities", "schema", "tables"]

@@ -6,7 +6,7 @@ import json
 import re
 import zlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, is_dataclass
+from dataclasses import asdict, is_dataclass, replace
 from functools import lru_cache
 from importlib import resources
 from math import isfinite
@@ -52,7 +52,7 @@ from pareto_monoped.report.tables import (
 from pareto_monoped.report.trials import rows_per_study
 from pareto_monoped.storage.extra_rows import read_limits, read_robustness, read_sensitivity
 from pareto_monoped.storage.place import StudyPlace
-from pareto_monoped.storage.reader import read_study
+from pareto_monoped.storage.reader import StudyData, read_study
 from pareto_monoped.storage.seals import UNSEALED
 
 if TYPE_CHECKING:
@@ -235,6 +235,16 @@ def payload_of(
         for data, simulated, found in zip(studies, again, models, strict=True)
     ]
     return build(sources, literal_cases())
+
+
+def with_exports(payload: Payload, exports: Path, studies: Sequence[StudyData], note: Callable[[str], None]) -> Payload:
+    """Add exported designs to the content of a page of some studies that has none; raise as ``write_report``."""
+    models = read_models(exports, studies, note=note)
+    cards = [
+        replace(card, models={str(trial): model for trial, model in found.items()})
+        for card, found in zip(payload.studies, models, strict=True)
+    ]
+    return replace(payload, studies=cards)
 
 
 @lru_cache(maxsize=1)

@@ -21,7 +21,7 @@ from pareto_monoped.actuator.search import map_for
 from pareto_monoped.analysis import choices
 from pareto_monoped.analysis.choices import HEIGHTS_M, default_pick, two_fronts
 from pareto_monoped.cli import _run as cli
-from pareto_monoped.cli.pareto import _Ahead, _newer, _search, _searches, _Steps
+from pareto_monoped.cli.pareto import _Ahead, _code_of, _newer, _search, _searches, _Steps
 from pareto_monoped.definition.algorithms import WeightedSettings
 from pareto_monoped.definition.study import load_study
 from pareto_monoped.definition.variables import OPENED
@@ -31,6 +31,7 @@ from pareto_monoped.jump.calibration import load_calibration
 from pareto_monoped.jump.gravity import standing_height_m
 from pareto_monoped.pareto.pick import pick
 from pareto_monoped.pareto.selectors import Knee
+from pareto_monoped.report.exports import read_models
 from pareto_monoped.robot.population import robot_arrays
 from pareto_monoped.storage.reader import read_study
 from tests.compute.dask_here import until
@@ -45,7 +46,7 @@ def pareto(folder: Path) -> subprocess.CompletedProcess:
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(out), redirect_stderr(err):
         patch.chdir(folder)
         patch.setenv("COLUMNS", "80")
-        patch.setattr("pareto_monoped.cad.write.folder.FORMATS", ("step",))
+        patch.setattr("pareto_monoped.cad.write.folder.FORMATS", ("step", "glb"))
         code = cli(WORDS[3:])
     return subprocess.CompletedProcess(WORDS, code, out.getvalue(), err.getvalue())
 
@@ -168,6 +169,17 @@ class TestMainJob:
         shares = re.findall(r"[+-][0-9.]+ %", done.stdout.split("their battery energy")[0])
         assert shares
         assert re.findall(r"[+-][0-9.]+ %", table) == shares
+
+    def test_the_page_made_beside_the_export_is_that_of_the_command_and_shows_the_exported_design(self, job, tmp_path):
+        folder, _ = job
+        made = folder / "reports" / "quick" / "report.html"
+        dbs = [f"studies/quick{word}.db" for word in ("", "_battery", "_opened")]
+        with contextlib.chdir(folder):
+            assert cli(["report", *dbs, "-o", str(tmp_path / "r.html"), "--exports", "reports/quick/cad"]) == 0
+        assert made.read_bytes() == (tmp_path / "r.html").read_bytes()
+        (design,) = (folder / "reports" / "quick" / "cad").iterdir()
+        (models,) = read_models(design.parent, [read_study(folder / "studies" / "quick.db")])
+        assert [f"trial_{trial}" for trial in models] == [design.name]
 
     def test_the_map_is_complete(self, job):
         folder, _ = job
@@ -342,12 +354,12 @@ def test_searches_run_side_by_side_and_come_to_their_ends_in_turn(monkeypatch, s
     events = []
 
     class Begun(contextlib.nullcontext):
-        def __init__(self, run):
+        def __init__(self, _, run):
             super().__init__(self)
             self.run = run
             events.append(f"begin {run[0]}")
 
-        def code(self):
+        def result(self):
             events.append(f"end {self.run[0]}")
 
     monkeypatch.setattr("pareto_monoped.cli.pareto._Ahead", Begun)
@@ -362,24 +374,24 @@ class TestAhead:
 
     def test_its_messages_wait_for_its_turn(self, tmp_path, monkeypatch, capfd):
         monkeypatch.chdir(tmp_path)
-        with _Ahead(["init", "quick"]) as ahead:
+        with _Ahead(_code_of, ["init", "quick"]) as ahead:
             until(lambda: ahead._heard.endswith("\n"))
             assert capfd.readouterr() == ("", "")
-            assert not ahead.code()
+            assert not ahead.result()
         assert capfd.readouterr() == ("", "wrote quick.toml; run it with: pareto-monoped run quick.toml\n")
         assert (tmp_path / "quick.toml").exists()
 
     def test_its_error_is_that_of_the_command(self, tmp_path, monkeypatch):
         monkeypatch.chdir(tmp_path)
-        with _Ahead(["run", "none.toml"]) as ahead, pytest.raises(StudyError, match=r"none\.toml"):
-            ahead.code()
+        with _Ahead(_code_of, ["run", "none.toml"]) as ahead, pytest.raises(StudyError, match=r"none\.toml"):
+            ahead.result()
 
     @pytest.mark.long
     def test_a_study_cut_short_goes_on_where_it_stopped(self, tmp_path):
         """By the same trials as those of a study that nobody stopped."""
         run = ["run", str(ROOT / "studies" / "quick.toml"), "--evaluations", "400", "--workers", "1", "--db"]
         cut, whole = tmp_path / "cut.db", tmp_path / "whole.db"
-        with suppress(KeyboardInterrupt), _Ahead([*run, cut]):
+        with suppress(KeyboardInterrupt), _Ahead(_code_of, [*run, str(cut)]):
             until(lambda: stored(cut) > 0)
             raise KeyboardInterrupt
         assert not read_study(cut).meta.finished
