@@ -86,3 +86,17 @@ def test_the_same_generator_climbs_alike(model):
     )
     assert (first.values == second.values).all()
     assert first.ends.tolist() == second.ends.tolist()
+
+
+@pytest.mark.parametrize(
+    ("variables", "designs", "climbed"), [(16, 1000, True), (16, 900, False), (17, 1000, False), (17, 300, True)]
+)
+def test_climbs_follow_a_process_or_a_cubic_but_no_quadratic(variables, designs, climbed):
+    """A cubic of 16 variables has 969 terms. Climbs on quadratics made searches of 25 variables worse."""
+    space = Space(names=tuple(f"x{k}" for k in range(variables)), lower=np.zeros(variables), upper=np.ones(variables))
+    values = spread(space, designs, np.random.default_rng(4))
+    points = np.column_stack((0.5 + values[:, 0], 10.0 + (values**2).sum(axis=1)))
+    archive = Archive(space)
+    none = np.zeros(designs)
+    archive.add(values, Scores(objectives=HEIGHT_AND_ENERGY, values=points, violation=none, constraints=none[:, None]))
+    assert Prediction(archive, archive.standing(), features_of(space)).determined == climbed
