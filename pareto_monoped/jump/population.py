@@ -71,11 +71,11 @@ class Population:
         """
         from mujoco import batch
 
-        from pareto_monoped.jump.callback import controlled
+        from pareto_monoped.jump.callback import controlled, untimed
         from pareto_monoped.jump.controller import DIVERGED, FLYING
 
         status, steps = self.records["status"], self.records["steps"]
-        with controlled():
+        with controlled(), untimed():
             while len(ids := np.flatnonzero(status <= FLYING)):
                 first = ids[0]
                 before = steps[first]
