@@ -67,3 +67,18 @@ def test_costs_are_logarithms_by_the_range_of_what_is_feasible():
     scores = Scores(objectives=HEIGHT_AND_ENERGY, values=values, violation=violation, constraints=violation[:, None])
     archive.add(np.array([[0.1], [0.2], [0.3], [0.4]]), scores)
     np.testing.assert_allclose(archive.standing().costs[:, 1], np.log(energies))
+
+
+@pytest.mark.parametrize(("variables", "most"), [(9, 300), (16, 300), (24, 200), (30, 160)])
+def test_a_process_leads_as_long_as_designs_and_their_features_are_few(variables, most):
+    """Its fit takes time for each feature of each pair of designs."""
+    space = Space(names=tuple(f"x{k}" for k in range(variables)), lower=np.zeros(variables), upper=np.ones(variables))
+    for count, few in ((most, True), (most + 1, False)):
+        archive = Archive(space)
+        values = np.random.default_rng(1).random((count, variables))
+        points = 1.0 + values[:, :2]
+        none = np.zeros((count, 0))
+        archive.add(
+            values, Scores(objectives=HEIGHT_AND_ENERGY, values=points, violation=none.sum(1), constraints=none)
+        )
+        assert archive.few is few
