@@ -51,7 +51,7 @@ HEADLINES_M = (0.7, HEADLINE_HEIGHT_M, 0.9)
 FLOOR_HEIGHTS_M = (*np.round(np.arange(0.36, 2.0, 0.01), 2).tolist(), 2.5, 3.0, 4.0, 5.0, 7.0, 10.0)
 """Heights at which the floor of a front is computed. So near each other, straight lines between lie at most 10 mJ above
 it, and 0.1 J in the centimetre in which it leaves zero. From where no leg touches the ground, they lie below."""
-_AT_ONCE = 10_000  #: designs that are weighed together for it: 40 MB
+_AT_ONCE = 20_000  #: designs that are weighed together for it: 80 MB
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
