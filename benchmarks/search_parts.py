@@ -1,7 +1,7 @@
-"""What each part of the default search is worth: the hypervolume that a search without it has, on nine landscapes.
+"""What each part of the default search is worth: the hypervolume that a search without it has, on eleven landscapes.
 
     python benchmarks/search_parts.py          # a short look: two parts on two landscapes
-    python benchmarks/search_parts.py --full   # every part on every landscape: half an hour
+    python benchmarks/search_parts.py --full   # every part on every landscape: three quarters of an hour
 
 Each part is taken out by a value of its constant at which it does nothing. The seeds are the same with and without it,
 but the searches then take other courses, so a difference means little that is not beyond the spread of the whole
@@ -17,7 +17,7 @@ from unittest.mock import patch
 import numpy as np
 import search_landscapes
 from pymoo.indicators.hv import HV
-from search_limits import STUDIES, searched
+from search_limits import STUDIES, held, searched
 
 SEARCH = "pareto_monoped.search"
 # What is taken out, and the constants that do it.
@@ -27,7 +27,7 @@ PARTS: dict[str, dict[str, object]] = {
     "two drawn generations with bounds and corners": {"surrogate._ON_BOUND": (0.0, 0.0)},
     "small steps around the best": {"surrogate._STEPS": 0},
     "climbs": {"prediction.Prediction.determined": False},
-    "scans within climbs, but for one value": {"variation._SCANNED": 1},
+    "scans within climbs, but for the bounds": {"variation._SCANNED": 2},
     "explorers": {"surrogate._EXPLORING": 0.0},
     "plain evolution": {"surrogate._PLAIN_ENDS": (0.0, 0.0)},
     "smaller generations at first": {"surrogate._SMALLER": (1, 1)},
@@ -40,9 +40,11 @@ PARTS: dict[str, dict[str, object]] = {
 }
 LANDSCAPES: dict[str, int] = {
     "Case C": 3,
+    "Case C, 300 jumps": 8,
     "MAD_M6C12": 3,
     "U10": 3,
-    "Case C within tight limits": 3,
+    "Case C within tight limits": 5,
+    "`wide.toml`": 5,
     "ten variables": 2,
     "osy": 3,
     "zdt4": 3,
@@ -50,24 +52,31 @@ LANDSCAPES: dict[str, int] = {
     "dtlz2": 3,
 }
 """Landscapes and how many seeds each has, from 101 on, which no other benchmark uses."""
-OTHERS = {"U10": (1000, {"case": "C", "motor": "U10"}), "ten variables": (2000, STUDIES["ten variables"][1])}
+OTHERS = {
+    "Case C, 300 jumps": (300, {"case": "C"}),
+    "U10": (1000, {"case": "C", "motor": "U10"}),
+    "ten variables": (2000, STUDIES["ten variables"][1]),
+}
+HELD = ("Case C within tight limits", "`wide.toml`")
+"""Studies of which the second table says how many jumps hold all limits."""
 
 
-def volumes(landscape: str, seeds: range) -> list[float]:
-    """Hypervolume of each search, that of studies in m J."""
+def searches(landscape: str, seeds: range) -> tuple[list[float], list[float]]:
+    """Hypervolume of each search, that of studies in m J, and of studies the percent of jumps that hold all limits."""
     if landscape in search_landscapes.PROBLEMS:
         volume = HV(ref_point=np.array(search_landscapes.PROBLEMS[landscape][1]))
-        return [float(volume(search_landscapes.search(landscape, "surrogate", seed, 1000))) for seed in seeds]
+        return [float(volume(search_landscapes.search(landscape, "surrogate", seed, 1000))) for seed in seeds], []
     jumps, values = (STUDIES | OTHERS)[landscape]
-    return [float(searched(values, "surrogate", seed, jumps).history["hypervolume"].iloc[-1]) for seed in seeds]
+    studies = [searched(values, "surrogate", seed, jumps) for seed in seeds]
+    return [float(study.history["hypervolume"].iloc[-1]) for study in studies], [held(study) for study in studies]
 
 
-def without(constants: dict[str, object], landscape: str, count: int) -> list[float]:
-    """Hypervolumes of ``count`` searches with other constants."""
+def without(constants: dict[str, object], landscape: str, count: int) -> tuple[list[float], list[float]]:
+    """``searches`` with other constants."""
     with ExitStack() as stack:
         for name, value in constants.items():
             stack.enter_context(patch(f"{SEARCH}.{name}", value))
-        return volumes(landscape, range(101, 101 + count))
+        return searches(landscape, range(101, 101 + count))
 
 
 def main() -> None:
@@ -79,17 +88,24 @@ def main() -> None:
     landscapes = LANDSCAPES if given.full else {"U10": 2, "zdt4": 2}
     print(f"| without | {' | '.join(landscapes)} |\n|---|{'---:|' * len(landscapes)}", flush=True)
     whole: dict[str, float] = {}
+    shares: dict[str, list[str]] = {part: [] for part in parts}
     for part, constants in parts.items():
         cells = []
         for landscape, count in landscapes.items():
-            found = without(constants, landscape, count)
+            found, kept = without(constants, landscape, count)
             mean = statistics.mean(found)
             if landscape in whole:
                 cells.append(f"{100.0 * (mean / whole[landscape] - 1.0):+.1f} %")
             else:
                 whole[landscape] = mean
                 cells.append(f"{mean:.4g} ± {100.0 * statistics.stdev(found) / count**0.5 / mean:.1f} %")
+            if landscape in HELD:
+                shares[part].append(f"{statistics.mean(kept):.0f} ({min(kept):.0f})")
         print(f"| {part} | {' | '.join(cells)} |", flush=True)
+    if given.full:
+        print(f"\n| within all limits, %, without | {' | '.join(HELD)} |\n|---|{'---:|' * len(HELD)}")
+        for part, texts in shares.items():
+            print(f"| {part} | {' | '.join(texts)} |")
 
 
 if __name__ == "__main__":
