@@ -249,7 +249,7 @@ def limit():
     yield f"Each search has {given('docs/limit.md', 'limit_reference_3.py', 'jumps'):,} jumps and one seed"
     many = table("benchmarks/search_landscapes.md", "study", "its time").set_index("study")
     ours, plain = firsts(many.loc["torque over time"].iloc[1:3])
-    assert ours == pytest.approx(plain, rel=0.05)  # the default search finds about as much as `nsga2`
+    yield f"{100.0 * (ours / plain - 1.0):.0f} percent more than `nsga2`"
     less = table("docs/limit.md", "virtual leg, J", "less, %").iloc[:, 3]
     heights = table("docs/limit.md", "virtual leg, J", "less, %").iloc[:, 0]
     savings = {at: float(cell) for at, cell in zip(heights, less, strict=True) if cell != "-"}
