@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pareto_monoped.actuator.judge import interval_tenths
+from pareto_monoped.actuator.ratiomap import either
 from pareto_monoped.actuator.search import map_for
 from pareto_monoped.errors import DesignError
 
@@ -99,3 +100,8 @@ def test_curves_of_the_figure(vt_map):
 
 def test_the_map_is_made_once():
     assert map_for("VT8020") is map_for("VT8020")
+
+
+@pytest.mark.parametrize(("choices", "text"), [(["a"], "a"), (["a", "b"], "a or b"), (["a", "b", "c"], "a, b or c")])
+def test_choices_are_listed_as_in_a_sentence(choices, text):
+    assert either(choices) == text
