@@ -7,6 +7,7 @@ import pytest
 
 from pareto_monoped.cad.shape import meshes
 from pareto_monoped.cad.shape.meshes import flaws
+from pareto_monoped.geometry.features import Bevel
 from pareto_monoped.geometry.parts import Ball, Prism
 from pareto_monoped.geometry.shapes import Circle, rectangle
 
@@ -96,3 +97,31 @@ def test_parts_that_do_not_touch_keep_every_bit():
     above = ring.points_mm + np.array([0.0, 0.0, 2.5])
     whole = meshes.joined([(ring, HERE), (ring, at(z=2.5))], 1e-3)
     assert np.array_equal(whole.points_mm, np.concatenate([ring.points_mm, above]))
+
+
+def plate_with(**bevel):
+    """A disc of radius 20 mm with a hole of 3 mm, from z = 5 to 8 mm, and a countersink of 4 mm from above."""
+    one = {"at": Circle(radius_mm=3.0), "edge_mm": 4.0, "face_mm": 8.0, "end_mm": 7.0, "hole": True} | bevel
+    return meshes._mesh((disc(20.0, 5.0, 8.0, 3.0),), (), (Bevel(**one),), 0.001)
+
+
+def test_a_countersink_takes_away_a_cone_less_its_hole():
+    whole = meshes._mesh((disc(20.0, 5.0, 8.0, 3.0),), (), (), 0.001)
+    cone = np.pi / 3.0 * (4.0**2 + 4.0 * 3.0 + 3.0**2) - np.pi * 3.0**2
+    plate = plate_with()
+    assert flaws(plate.points_mm[plate.triangles]) == ""
+    assert whole.volume_mm3 - plate.volume_mm3 == pytest.approx(cone, rel=0.002)
+
+
+@pytest.mark.parametrize(
+    ("bevel", "said"),
+    [
+        ({"at": Circle(radius_mm=3.5)}, "8) mm, 1 mm deep: must stand on an edge of radius 3.5 mm"),
+        ({"face_mm": 7.5, "end_mm": 7.0}, "7.5) mm, 0.5 mm deep: must stand on an edge of radius 3 mm"),
+        ({"end_mm": 4.0}, "8) mm, 4 mm deep: .* be less deep than its cylinder"),
+        ({"end_mm": 5.0}, "8) mm, 3 mm deep: .* be less deep than its cylinder"),
+    ],
+)
+def test_a_bevel_that_its_cylinder_cannot_have_is_refused(bevel, said):
+    with pytest.raises(ValueError, match=said.replace(")", "\\)")):
+        plate_with(**bevel)
