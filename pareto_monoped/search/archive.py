@@ -30,7 +30,7 @@ _FEW_DESIGNS = 300
 times as long and finds as much."""
 _FEW_VALUES = 4_800
 """Values of features up to which it does. Our own choice: 300 designs of 16 features, or 180 of 26, with which a search
-of 1,500 torques over time takes three quarters of the time and finds as much."""
+of 1,500 torques over time takes four fifths of the time and finds as much."""
 _MOST = 12_000
 """Designs that an archive holds at most. Our own choice: half as many again as the longest shipped study of this search
 has, so that the time per design stays what it is there, however long a search goes on."""
