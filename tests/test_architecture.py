@@ -374,3 +374,53 @@ def test_nothing_is_decided_by_the_name_of_a_part():
 )
 def test_a_decision_by_the_name_of_a_part_is_found(code):
     assert len(decisions_by_part_name(ast.parse(code))) == 1
+
+
+FILLED = {
+    "bodies.Blocking",
+    "coordinator.Standing",
+    "coordinator._Coordinator",
+    "coordinator._Job",
+    "crew.Task",
+    "crew._Given",
+    "crew._Post",
+    "engines.PlanarPopulation",
+    "paper.Paper",
+    "pareto._Steps",
+    "population.Population",
+    "quiet.Setting",
+    "reader._Check",
+    "single.Moment",
+    "tables.Item",
+}
+"""Records that are filled while they are used: of a run, of a drawing, of workers."""
+
+
+def dataclasses_of(code):
+    """Class -> the keywords of its decorator."""
+    for node in ast.walk(ast.parse(code)):
+        for call in getattr(node, "decorator_list", ()):
+            if isinstance(call, ast.Call) and ast.unparse(call.func) == "dataclass":
+                yield node.name, {keyword.arg: ast.unparse(keyword.value) for keyword in call.keywords}
+
+
+def loose(code):
+    """Dataclasses that can be changed, or that say that they may be."""
+    return {
+        name
+        for name, given in dataclasses_of(code)
+        if "frozen" not in given or "False" in (given[key] for key in given if key != "eq")
+    }
+
+
+def test_records_are_frozen_but_for_those_that_are_filled_while_they_are_used():
+    found = {f"{path.stem}.{name}" for path in SOURCES for name in loose(path.read_text(encoding="utf-8"))}
+    assert found == FILLED
+
+
+@pytest.mark.parametrize(
+    "kind", ["slots=True", "frozen=False", "frozen=True, slots=False", "frozen=True, kw_only=False"]
+)
+def test_a_record_that_is_not_frozen_is_found(kind):
+    assert loose(f"@dataclass({kind})\nclass Record:\n    name: str") == {"Record"}
+    assert loose("@dataclass(frozen=True, eq=False)\nclass Record:\n    name: str") == set()
