@@ -29,8 +29,8 @@ _FEW_DESIGNS = 300
 """Up to which a Gaussian process predicts. Our own choice: with 500, a search of 1,000 designs takes two and a half
 times as long and finds as much."""
 _FEW_VALUES = 4_800
-"""Values of features up to which it does. Our own choice: 300 designs of 16 features, or 180 of 26, with which a search
-of 1,500 torques over time takes four fifths of the time and finds as much."""
+"""Designs times features up to which it does. Our own choice: 300 designs of 16 features or 184 of 26, with which a
+search of 1,500 torques over time takes four fifths of the time and finds as much."""
 _MOST = 12_000
 """Designs that an archive holds at most. Our own choice: half as many again as the longest shipped study of this search
 has, so that the time per design stays what it is there, however long a search goes on."""

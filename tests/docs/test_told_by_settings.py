@@ -274,8 +274,8 @@ SETTINGS = {
         {(2, 3): "begins with two generations spread over the space"}[
             SurrogateSettings(name="surrogate").drawn_generations, surrogate._ROUNDS
         ],
-        f"Up to {archive._FEW_DESIGNS} designs, or fewer of more than {archive._FEW_VALUES // archive._FEW_DESIGNS} "
-        "features, the model is a Gaussian process",
+        f"Up to {archive._FEW_DESIGNS} designs, fewer if they have more than "
+        f"{archive._FEW_VALUES // archive._FEW_DESIGNS} features, the model is a Gaussian process",
         {0.1: "A tenth of these explores"}[surrogate._EXPLORING],
         {((2, 4), 0.5): "Generations are then a quarter as large"}[surrogate._SMALLER, surrogate._SEEKING],
         {0.01: "At most a percent is tolerated"}[archive.TOLERATED],
