@@ -279,7 +279,7 @@ SETTINGS = {
         {0.1: "A tenth of these explores"}[surrogate._EXPLORING],
         {((2, 4), 0.5): "Generations are then a quarter as large"}[surrogate._SMALLER, surrogate._SEEKING],
         {0.01: "At most a percent is tolerated"}[archive.TOLERATED],
-        {0.1: "an expected risk of more than a tenth"}[prediction._RISK],
+        {0.1: "a chance of more than a tenth"}[prediction._RISK],
         {0.2: "when a fifth of its jumps failed"}[remarks._MANY_FAIL],
         {4: "how much hypervolume four times as many jumps would add"}[growth.AHEAD],
         {4: "at most four such remarks"}[remarks._MOST_LINES],

@@ -8,10 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.special import expit
 
 from pareto_monoped.search.archive import TOLERATED, Archive
 from pareto_monoped.search.prediction import Prediction, gains, unlike
-from pareto_monoped.search.response_surface import features_of
+from pareto_monoped.search.response_surface import features_of, fitted, log_odds, terms
 from pareto_monoped.search.surrogate import SurrogateSearch
 from pareto_monoped.search.variation import spread
 from tests.search.test_surrogate import SETTINGS, SPACE, archive_of, scored
@@ -81,6 +82,50 @@ def test_where_jumps_fail_is_learned_from_all_trials():
         assert (violation[many[:, 0] < 0.38] <= TOLERATED).mean() > 0.9
 
 
+def test_odds_of_two_groups_are_those_counted(monkeypatch):
+    """The closed form of a logistic regression on one yes or no: 3 to 9 in one group, 8 to 2 in the other."""
+    monkeypatch.setattr("pareto_monoped.search.response_surface._ODDS_RIDGE", 0.0)
+    group = np.repeat((0.0, 1.0), (12, 10))
+    happened = np.arange(22) % 12 < np.where(group, 8, 3)
+    found = log_odds(np.column_stack((np.ones(22), group)), happened)
+    np.testing.assert_allclose(found, (np.log(3.0 / 9.0), np.log(8.0 / 2.0) - np.log(3.0 / 9.0)), rtol=1e-4)
+
+
+def test_odds_are_most_likely():
+    """Against Newton's method, written out term by term."""
+    generator = np.random.default_rng(21)
+    products = terms(generator.uniform(-1.0, 1.0, (300, 3)), 2)
+    happened = products[:, 1] + 0.5 * products[:, 4] + 0.3 * generator.standard_normal(300) > 0.8
+    wanted, ridge = np.zeros(10), np.diag([0.0, *[0.1] * 9])
+    for _ in range(30):
+        slope, curve = ridge @ wanted, ridge.copy()
+        for row, yes in zip(products, happened, strict=True):
+            chance = 1.0 / (1.0 + np.exp(-row @ wanted))
+            slope += (chance - yes) * row
+            curve += chance * (1.0 - chance) * np.outer(row, row)
+        wanted -= np.linalg.solve(curve, slope)
+    np.testing.assert_allclose(products @ log_odds(products, happened), products @ wanted, rtol=0.0, atol=0.05)
+
+
+def test_jumps_that_fail_in_one_corner_are_not_expected_to_fail_in_others():
+    """A fixed bug: a polynomial fitted to 0 and 1 expected it, and 7 of 20 searches for the MAD_M6C12 missed designs.
+
+    There, the leg is too heavy for the motor in one corner, and next to it are the designs that need least energy.
+    """
+    generator = np.random.default_rng(9)
+    known, others = (np.clip(generator.uniform(-2.0, 2.0, (count, 9)), -1.0, 1.0) for count in (200, 4000))
+
+    def wrong(points):
+        return points[:, 0] + points[:, 1] - points[:, 2] > 2.8
+
+    assert 3 <= wrong(known).sum() <= 8
+    fine = terms(others[~wrong(others)], 2)
+    expected = expit(fine @ log_odds(terms(known, 2), wrong(known)))
+    assert (expected > 0.1).mean() < 0.03
+    polynomial = fine @ fitted(terms(known, 2), wrong(known)[:, None].astype(float), np.ones(200))
+    assert (polynomial > 0.1).mean() > 0.1  # or the case would tell nothing
+
+
 def test_without_a_failed_jump_only_limits_count():
     archive = archive_of(300)
     prediction = Prediction(archive, archive.standing(), features_of(SPACE))
@@ -94,7 +139,7 @@ def test_a_search_learns_where_jumps_fail():
         failed.append(fails(values).mean())
         algorithm.tell(failing(values))
     assert np.mean(failed[:2]) > 0.3
-    assert np.mean(failed[-8:]) < 0.1
+    assert np.mean(failed[2:]) < 0.08  # a few: the best designs are next to those that fail
 
 
 def test_drawing_ends_early_where_no_design_holds_the_limits():
