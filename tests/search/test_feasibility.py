@@ -133,13 +133,18 @@ def test_without_a_failed_jump_only_limits_count():
 
 
 def test_a_search_learns_where_jumps_fail():
-    algorithm, failed = SurrogateSearch(SPACE, SETTINGS, 4), []
-    for _ in range(20):
-        values = algorithm.ask().values
-        failed.append(fails(values).mean())
-        algorithm.tell(failing(values))
-    assert np.mean(failed[:2]) > 0.3
-    assert np.mean(failed[2:]) < 0.08  # a few: the best designs are next to those that fail
+    """Few fail later, though the best designs are next to those that do; one search varies by more than the bound."""
+    shares = []
+    for seed in (4, 5, 6):
+        algorithm, failed = SurrogateSearch(SPACE, SETTINGS, seed), []
+        for _ in range(20):
+            values = algorithm.ask().values
+            failed.append(fails(values).mean())
+            algorithm.tell(failing(values))
+        shares.append(failed)
+    assert np.mean(shares, axis=0)[:2].mean() > 0.3
+    assert np.mean(shares, axis=0)[2:].mean() < 0.08
+    assert np.mean(shares, axis=0)[-8:].mean() < 0.1
 
 
 def test_drawing_ends_early_where_no_design_holds_the_limits():
