@@ -150,18 +150,18 @@ def fitted(products: Floats, targets: Floats, weights: Floats) -> Floats:
 
 
 _ODDS_RIDGE = 0.1
-"""Half of it times the square of each coefficient is taken from the log-likelihood. Our own choice: 0.01 was no better.
-"""
+"""Half of it times each coefficient's square is taken from the log-likelihood. Our own choice: 0.01 was no better."""
 _ODDS_STEPS = 50
 """Steps that find the coefficients. Our own choice: the likelihood hardly grows after them."""
 
 
 def log_odds(products: Floats, happened: NDArray[np.bool_]) -> Floats:
-    """Return coefficients, (t,), by which ``terms`` of points, (n, t), give the logarithm of the odds of what happened.
+    """Return coefficients, (t,), of n points' ``terms``, (n, t), for the logarithm of the odds that something happens.
 
-    ``happened``, shape (n,), is true at some points and false at others. This is logistic regression with a ridge
-    (Hastie, Tibshirani and Friedman 2009, section 4.4): the points near the boundary decide where it is. A polynomial
-    fitted to 0 and 1 also follows all others, and expects what happened at 5 of 200 points in corners without any.
+    ``happened``, shape (n,), says where it did, and must be true at some points and false at others. This is logistic
+    regression with a ridge (Hastie, Tibshirani and Friedman 2009, section 4.4): the points near the boundary decide
+    where it is. A polynomial fitted to 0 and 1 follows all points alike. After 5 failed jumps of 200, it expects
+    failures in corners where no jump has failed.
     """
     sign, share = np.where(happened, 1.0, -1.0), happened.mean()
     ridge = np.full(products.shape[1], _ODDS_RIDGE)
